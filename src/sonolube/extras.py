@@ -3,10 +3,12 @@
 import platform
 import re
 import sys
-from collections.abc import Mapping
+import tomllib
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, requires, version
 from importlib.util import find_spec
+from pathlib import Path
 from types import MappingProxyType
 
 from sonolube.errors import MissingPackage
@@ -58,57 +60,13 @@ class Extra:
         return all(_is_found(module) for module in self.modules)
 
 
-_ALL = (
-    Extra(
-        name="fem",
-        package="netgen-mesher",
-        distributions="netgen-mesher",
-        modules=("netgen",),
-        needed_by="Bodies and their meshes, in modes, horn design and impedance compute,",
-        machines=("x86_64", "AMD64"),
-    ),
-    Extra(
-        name="surfaces",
-        package="SurfaceTopography",
-        distributions="SurfaceTopography",
-        modules=("SurfaceTopography",),
-        needed_by="Surface files of other formats than Wyko OPD, NanoFocus NMS, NPY and XYZ text",
-    ),
-    Extra(
-        name="boundary-element",
-        package="ContactMechanics",
-        distributions="ContactMechanics",
-        modules=("ContactMechanics", "SurfaceTopography"),
-        needed_by="Boundary elements on height maps",
-    ),
-    Extra(
-        name="app",
-        package="Starlette and uvicorn",
-        distributions="starlette tomlkit uvicorn",
-        modules=("starlette", "uvicorn", "tomlkit"),
-        needed_by="The workbench in the browser",
-    ),
-    Extra(name="web", package="Plotly", distributions="plotly", modules=("plotly",), needed_by="Interactive maps"),
-    Extra(
-        name="cluster",
-        package="Dask",
-        distributions="dask distributed",
-        modules=("distributed",),
-        needed_by="Sweeps on a cluster",
-    ),
-    Extra(name="gpu", package="JAX", distributions="jax", modules=("jax",), needed_by="Vibrations on a GPU"),
-    Extra(
-        name="daqmx", package="nidaqmx", distributions="nidaqmx", modules=("nidaqmx",), needed_by="Devices of NI-DAQmx"
-    ),
-    Extra(
-        name="visa",
-        package="pyvisa-py",
-        distributions="pyserial pyvisa pyvisa-py",
-        modules=("pyvisa", "pyvisa_py", "serial"),
-        needed_by="Function generators and motor controllers",
-    ),
-)
-EXTRAS: Mapping[str, Extra] = MappingProxyType({extra.name: extra for extra in _ALL})
+def _extra(name: str, *, modules: Sequence[str], machines: Sequence[str] = (), **texts: str) -> Extra:
+    """Optional part of an entry of the file beside this module."""
+    return Extra(name=name, modules=tuple(modules), machines=tuple(machines), **texts)
+
+
+_ENTRIES = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+EXTRAS: Mapping[str, Extra] = MappingProxyType({name: _extra(name, **entry) for name, entry in _ENTRIES.items()})
 """The optional parts by name."""
 
 

@@ -1,6 +1,7 @@
 """Style and output of figures: a colour-blind-safe palette that is legible in grey print, and atomic file writing."""
 
 import io
+import tomllib
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -27,22 +28,6 @@ _AXES = ("xaxis", "yaxis", "zaxis")
 _INCH = 25.4  # mm
 _NARROW = 4.7  # inches: a figure drawn no wider fits one column
 _OUTLINES = frozenset({"glyf", "loca", "head", "hhea", "hmtx", "maxp", "cvt ", "fpgm", "prep"})  # tables of a font
-_COMMON = {
-    "axes.formatter.min_exponent": 4,
-    "axes.axisbelow": True,
-    "axes.grid": True,
-    "axes.spines.right": False,
-    "axes.spines.top": False,
-    "figure.constrained_layout.use": True,
-    "figure.dpi": 110,
-    "font.family": "DejaVu Sans",
-    "grid.alpha": 0.25,
-    "legend.frameon": False,
-    "pdf.fonttype": 42,
-    "savefig.bbox": "standard",  # whatever a user's own style says, lest it crop figures off their stated width
-    "svg.fonttype": "none",
-    "svg.hashsalt": "sonolube",
-}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -68,41 +53,9 @@ class FigureStyle:
     settings: Mapping[str, float]
 
 
+_FILE = tomllib.loads(Path(__file__).with_name("figure_styles.toml").read_text(encoding="utf-8"))
 FIGURE_STYLES: Mapping[str, FigureStyle] = MappingProxyType(
-    {
-        "journal": FigureStyle(
-            column_width=85.0,
-            page_width=174.0,
-            largest_height=230.0,
-            smallest_text=7.0,
-            settings={
-                "font.size": 8.5,
-                "grid.linewidth": 0.6,
-                "legend.fontsize": 7.5,
-                "lines.linewidth": 1.4,
-                "lines.markersize": 4.5,
-                "savefig.dpi": 300,
-                "xtick.labelsize": 8,
-                "ytick.labelsize": 8,
-            },
-        ),
-        "slides": FigureStyle(
-            column_width=254.0,
-            page_width=254.0,
-            largest_height=143.0,
-            smallest_text=13.0,
-            settings={
-                "font.size": 15,
-                "grid.linewidth": 0.9,
-                "legend.fontsize": 13.5,
-                "lines.linewidth": 2.4,
-                "lines.markersize": 8,
-                "savefig.dpi": 200,
-                "xtick.labelsize": 13.5,
-                "ytick.labelsize": 13.5,
-            },
-        ),
-    }
+    {name: FigureStyle(**entry) for name, entry in _FILE["styles"].items()}
 )
 """Styles by name: widths and sizes of text for the columns of a journal, or for slides of 16:9."""
 
@@ -153,8 +106,8 @@ def publication_style(style: str | None = None) -> Iterator[None]:
     from cycler import cycler
 
     with figure_style(style):
-        settings = _COMMON | dict(FIGURE_STYLES[_in_use].settings) | {"axes.prop_cycle": cycler(color=COLOURS)}
-        with mpl.rc_context(settings):  # type: ignore[arg-type]
+        settings = _FILE["settings"] | FIGURE_STYLES[_in_use].settings | {"axes.prop_cycle": cycler(color=COLOURS)}
+        with mpl.rc_context(settings):
             yield
 
 

@@ -2,6 +2,8 @@
 
 import json
 import re
+import tomllib
+from importlib.resources import files
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -178,6 +180,12 @@ def test_a_surface_of_known_deviation_has_it(plate: Path) -> None:
     assert found["kurtosis"] == approx(3.0, abs=0.4)
     assert found["summit_density"] > 0
     assert {table.name for table in sheet.tables} >= {"profiles", "sampling", "waviness"}
+
+
+def test_every_areal_parameter_with_a_label_is_on_the_sheet(plate: Path) -> None:
+    text = files("sonolube.report.measured").joinpath("surface_labels.toml").read_text(encoding="utf-8")
+    shown = {value.name: value.label for value in surface_sheet(plate, settings=NPY).values}
+    assert shown.items() >= tomllib.loads(text)["areal"].items()
 
 
 def test_cutoffs_in_the_wrong_order_are_refused(plate: Path) -> None:

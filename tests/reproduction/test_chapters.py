@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from sonolube.reproduction import SECTIONS, reproduction
+from sonolube.reproduction.plots import figure_texts
 
 PAGE = Path(__file__).parents[2] / "docs" / "validation.md"
 
@@ -30,3 +31,10 @@ def test_every_figure_with_assumed_inputs_that_the_page_lists_is_drawn() -> None
     captions = {figure.name: figure.caption for section in SECTIONS for figure in section.figures()}
     assert len(listed) == 11
     assert [name for name in listed if not re.search(r"assumed|printed|no model", captions.get(name, ""))] == []
+
+
+def test_every_text_of_a_figure_is_that_of_a_figure_that_is_drawn() -> None:
+    pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
+    drawn = {figure.name: figure for section in SECTIONS for figure in section.figures()}
+    assert figure_texts().keys() <= drawn.keys()
+    assert [name for name in figure_texts() if re.search(r"[{}]", drawn[name].caption)] == []

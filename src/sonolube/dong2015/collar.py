@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from sonolube.checks import require_positive
+from sonolube.dong2015.sizes import SIZES
 from sonolube.errors import InvalidInput
 from sonolube.models.fem.mesh.geometry import MILLIMETRE, Geometry, bond, cad_kernel, single_body
 from sonolube.models.fem.parts.bodies import extruded_polygon
@@ -264,24 +265,7 @@ def _name_bore(body: Geometry, collar: Collar) -> None:
 
 _INCH = 0.0254
 
-COLLAR_DIMENSION_SOURCES: Mapping[str, str] = MappingProxyType(
-    {
-        "frame_length": "printed: 3.9 in, D 4.5.2; that this side lies along the stacks is assumed",
-        "frame_width": "printed: 3.7 in, D 4.5.2; that this side lies across the stacks is assumed",
-        "frame_thickness": "printed: 1 in, D 4.5.2",
-        "base_thickness": "assumed; with two stacks it follows from the other lengths",
-        "top_thickness": "assumed; with two stacks equal to the base",
-        "pillar_width": "assumed",
-        "ring_width": "printed for the first design: 1 in, D 4.5.2, taken across flats; assumed for the others",
-        "ring_thickness": "assumed",
-        "bore_diameter": "printed: 0.5 in for the first design, D 4.5.2, across flats; of the others that of the rod, "
-        "0.75 in, D 4.5.4",
-        "bolt_diameter": "assumed",
-        "stack_length": "printed: Table 4.7",
-        "stack_outer_diameter": "printed: Table 4.7",
-        "stack_inner_diameter": "printed: Table 4.7",
-    }
-)
+COLLAR_DIMENSION_SOURCES: Mapping[str, str] = MappingProxyType(SIZES["collar_sources"])
 """Source of each dimension of the designs: `printed` with its place in D, or `assumed`."""
 
 FIRST_COLLAR = Collar(
@@ -311,14 +295,7 @@ NOMINAL_COLLAR = replace(THIN_HEXAGON_COLLAR, stacks=1, ring_thickness=0.5 * _IN
 """Final design with nominal dimensions: one stack, and round inches for what D does not print."""
 
 ASSUMED_RANGES: Mapping[str, tuple[float, float]] = MappingProxyType(
-    {
-        "ring_width": (24e-3, 28e-3),
-        "ring_thickness": (10e-3, 25.4e-3),
-        "bolt_diameter": (2.5e-3, 4.9e-3),
-        "base_thickness": (12e-3, 30e-3),
-        "top_thickness": (12e-3, 30e-3),
-        "pillar_width": (10e-3, 25e-3),
-    }
+    {name: (low, high) for name, (low, high) in SIZES["assumed_ranges"].items()}
 )
 """Bounds of the assumed dimensions of the final design in m, which leave room for stack, rod and bolt."""
 

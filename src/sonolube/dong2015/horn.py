@@ -11,11 +11,11 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any, Final
 
-from sonolube.dong2015.sizes import sized
+from sonolube.dong2015.sizes import sized, sourced_dimensions
 from sonolube.errors import UnknownName
 from sonolube.models.fem.mesh.geometry import MILLIMETRE, Geometry, cad_kernel, single_body
 from sonolube.models.fem.parts.bodies import extruded_polygon
-from sonolube.models.fem.parts.transducers import SourcedDimension, Transducer, stack_bodies, stack_from_bodies
+from sonolube.models.fem.parts.transducers import Transducer, stack_bodies, stack_from_bodies
 from sonolube.models.fem.solver.model import FixedSupport, Medium, isotropic_medium
 from sonolube.models.fem.solver.reduction import Output
 
@@ -31,28 +31,7 @@ POISSON_HORN_SOLIDS: Final[Mapping[str, Medium]] = MappingProxyType(
 )
 """Solids of both horns: handbook constants, with which they have the printed frequencies."""
 
-_PRINTED: Final = "printed, D 2.1.2"
-_COMMON: Final = "assumed: common size of a transducer for 2 kW at 20 kHz"
-_FITTED: Final = "chosen for a resonance of the whole at 20 kHz, the frequency of the welder, D 2.1.2"
-
-POISSON_HORN_DIMENSIONS: Final = (
-    SourcedDimension(name="length", value=127e-3, source=_PRINTED, printed=True),
-    SourcedDimension(name="width", value=60.96e-3, source=_PRINTED, printed=True),
-    SourcedDimension(name="thickness", value=25.4e-3, source=_PRINTED, printed=True),
-    SourcedDimension(
-        name="taper_length", value=25.4e-3, source="assumed: the flat face ends 1.5 in off the middle, D Table 2.1"
-    ),
-    SourcedDimension(
-        name="end_thickness", value=19.05e-3, source="with it both horns have their printed frequencies, D 2.1.3"
-    ),
-    SourcedDimension(name="outer_radius", value=25e-3, source=_COMMON),
-    SourcedDimension(name="inner_radius", value=10e-3, source=_COMMON),
-    SourcedDimension(name="stack_length", value=24e-3, source=_COMMON),
-    SourcedDimension(name="stack_layers", value=4.0, source=_COMMON),
-    SourcedDimension(name="rod_radius", value=6e-3, source=_COMMON),
-    SourcedDimension(name="back_length", value=30e-3, source=_COMMON),
-    SourcedDimension(name="front_length", value=34.5e-3, source=_FITTED),
-)
+POISSON_HORN_DIMENSIONS: Final = sourced_dimensions("poisson_horn")
 """Sizes of horn and transducer with their sources."""
 
 
@@ -138,7 +117,7 @@ def poisson_horn(
         ),
         copies=4,
         dimensions=tuple(
-            replace(size, value=sizes["front_length"]) if size.source == _FITTED else size
+            replace(size, value=sizes["front_length"]) if size.name == "front_length" else size
             for size in POISSON_HORN_DIMENSIONS
         ),
     )

@@ -1,11 +1,21 @@
-"""Bodies whose sizes have their defaults in a table of sourced dimensions."""
+"""Sizes of the parts of D with their sources, and bodies whose sizes have their defaults in a table of these."""
 
+import tomllib
 from collections.abc import Callable, Iterable
 from functools import wraps
 from inspect import Parameter, signature
-from typing import Any
+from pathlib import Path
+from typing import Any, Final
 
 from sonolube.models.fem.parts.transducers import SourcedDimension, Transducer
+
+SIZES: Final = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+"""Tables of the file beside this module by part."""
+
+
+def sourced_dimensions(part: str) -> tuple[SourcedDimension, ...]:
+    """Dimensions of a part of D with their sources, in the order of its table."""
+    return tuple(SourcedDimension(name=name, **entry) for name, entry in SIZES[part].items())
 
 
 def sized(dimensions: Iterable[SourcedDimension]) -> Callable[[Callable[..., Transducer]], Callable[..., Transducer]]:

@@ -16,7 +16,7 @@ from typing import Any, Final
 from sonolube.dong2015.collar import COLLAR_DIMENSION_SOURCES, FINAL_COLLAR, collar_geometry, dimension_names
 from sonolube.dong2015.collar_analysis import collar_media
 from sonolube.dong2015.horn import poisson_horn
-from sonolube.dong2015.sizes import sized
+from sonolube.dong2015.sizes import sized, sourced_dimensions
 from sonolube.models.fem.mesh.geometry import Geometry, bond, cad_kernel, single_body
 from sonolube.models.fem.parts.bodies import acorn_nut, hub_disc
 from sonolube.models.fem.parts.transducers import (
@@ -30,20 +30,7 @@ from sonolube.models.fem.solver.model import Electrodes, FixedSupport
 from sonolube.models.fem.solver.reduction import Output
 
 _OF_STACK = ("outer_radius", "inner_radius", "length", "rod_radius", "back_length", "front_length", "washer_radius")
-TRIBOMETER_ACTUATOR_DIMENSIONS = (
-    SourcedDimension(name="outer_radius", value=9.5e-3, source="360 nF and 62 layers of D Table 3.5 with PIC255"),
-    SourcedDimension(name="inner_radius", value=4e-3, source="bore that a rod of 1/4 in passes"),
-    SourcedDimension(name="length", value=38.6e-3, source="70 g of D Table 3.5 with PIC255"),
-    SourcedDimension(name="stack_layers", value=62.0, printed=True, source="D Table 3.5"),
-    SourcedDimension(name="rod_radius", value=2.7e-3, source="root of a 1/4-20 thread; 3 in long in D A.1.3"),
-    SourcedDimension(name="washer_radius", value=8e-3, source="washer for 1/4 in"),
-    SourcedDimension(name="back_length", value=18e-3, source="washer, nuts and the end of the gimbal's arm"),
-    SourcedDimension(name="front_length", value=7.2e-3, source="washer and nut of 1/4 in"),
-    SourcedDimension(name="width", value=11.1e-3, source="acorn nut of 1/4 in, 7/16 in across flats"),
-    SourcedDimension(name="nut_length", value=6.6e-3, source="hexagon of an acorn nut of 1/4 in"),
-    SourcedDimension(name="tip_radius", value=5e-3, source="dome of an acorn nut of 1/4 in"),
-    SourcedDimension(name="contact_radius", value=0.8e-3, source="worn flat of 2 mm2 in D 2.4.3"),
-)
+TRIBOMETER_ACTUATOR_DIMENSIONS = sourced_dimensions("tribometer_actuator")
 """Dimensions of the tribometer's actuator (D 2.3.1, appendix A) and their sources; the text prints few of them."""
 
 
@@ -117,11 +104,7 @@ _FAR: Final = 1e3  # mm, beyond all bodies
 CUTTER_HEAD_DIMENSIONS = (
     *TRIBOMETER_ACTUATOR_DIMENSIONS[:6],  # D 4.4.2: the stack is that of the tribometer
     TRIBOMETER_ACTUATOR_DIMENSIONS[7],
-    SourcedDimension(name="back_length", value=32e-3, source="chosen for a resonance at 20 kHz, D Table 4.6"),
-    SourcedDimension(name="hub_radius", value=4.5e-3, source="weld nut of 1/4 in"),
-    SourcedDimension(name="hub_length", value=6e-3, source="weld nut of 1/4 in"),
-    SourcedDimension(name="disc_radius", value=15e-3, source="its rim is to move against its centre, D 4.4.4"),
-    SourcedDimension(name="thickness", value=0.8e-3, source="its rim is to move against its centre, D 4.4.4"),
+    *sourced_dimensions("cutter_head"),
 )
 """Dimensions of the cutter head (D 4.4) and their sources; the text prints none but the number of layers."""
 

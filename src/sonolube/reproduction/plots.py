@@ -1,17 +1,40 @@
-"""Axes, styles and error bars of the reproduction's figures; matplotlib is imported when a figure is drawn."""
+"""Texts, axes, styles and error bars of the reproduction's figures; matplotlib is imported when a figure is drawn."""
 
-from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any
+import tomllib
+from collections.abc import Callable, Iterable, Mapping
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from numpy.typing import ArrayLike
 
 from sonolube.facts.published import PrintedNumber
-from sonolube.figure import COLOURS, LINES, MARKERS, subplots
+from sonolube.figure import COLOURS, LINES, MARKERS, ReportFigure, subplots
 from sonolube.validation.published_tests import FrictionTest
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+
+class FigureText(NamedTuple):
+    """Title and caption of a figure in the file of this room, the caption with fields for numbers and notes."""
+
+    title: str
+    caption: str
+
+
+@cache
+def figure_texts() -> Mapping[str, FigureText]:
+    """Titles and captions by the names of the figures."""
+    content = tomllib.loads(Path(__file__).with_name("figures.toml").read_text(encoding="utf-8"))
+    return {name: FigureText(**entry) for name, entry in content.items()}
+
+
+def report_figure(name: str, draw: "Callable[[], Figure]", **fields: float | str) -> ReportFigure:
+    """Figure with the title and caption of its name, numbers and notes put into the fields of the caption."""
+    text = figure_texts()[name]
+    return ReportFigure(name=name, title=text.title, caption=text.caption.format(**fields), draw=draw)
 
 
 def single_axes(figsize: tuple[float, float] = (4.8, 3.6)) -> "tuple[Figure, Axes]":

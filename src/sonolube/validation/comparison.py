@@ -52,24 +52,6 @@ DATA_SETS: Final[dict[str, str]] = {**NORMAL_VIBRATION_SETS, **IN_PLANE_VIBRATIO
 ONLY_PREDICTED: Final = {"H": "its amplitude at resonance is not known; it is predicted only"}
 """Sets to which no variant is fitted, with the reason."""
 
-_FORMER_NAMES: Final = {
-    "as-published": "dong-2015-full-period",
-    "separating-half-period": "dong-2015-half-period",
-    "load-balanced": "dong-2015-load-balanced",
-    "load-balanced-per-rig": "dong-2015-load-balanced-per-rig",
-    "stick-slip-mindlin": "asperity-stick-slip-mindlin",
-    "stick-slip-mindlin-per-rig": "asperity-stick-slip-mindlin-per-rig",
-    "stick-slip": "asperity-stick-slip-fitted",
-    "stick-slip-in-plane": "asperity-stick-slip-in-plane",
-    "stick-slip-in-plane-pins": "asperity-stick-slip-in-plane-pins",
-    "stick-slip-in-plane-per-rig": "asperity-stick-slip-in-plane-per-rig",
-    "coupled": "bristle-with-holder",
-    "coupled-per-rig": "bristle-with-holder-per-rig",
-    "coupled-in-plane": "bristle-with-holder-in-plane",
-    "coulomb-along-hidden": "coulomb-longitudinal-fitted",
-    "coulomb-oblique-hidden": "coulomb-oblique-fitted",
-    "spring-along": "spring-longitudinal",
-}
 _MAX_PROFILED: Final = 2  # parameters of a variant whose intervals are computed; with more, each point takes a long fit
 
 
@@ -193,10 +175,11 @@ class RigPrediction:
 def compared_models(names: Iterable[str] = ()) -> tuple[ModelVariant, ...]:
     """Model variants of some names in the order of `COMPARED_MODELS`; all of them if no name is given."""
     known = {model.name: model for model in COMPARED_MODELS}
+    former = {model.former_name: model.name for model in COMPARED_MODELS if model.former_name}
     selected = list(names)
     for name in selected:
-        if name in _FORMER_NAMES:
-            raise InvalidInput(f"model {name!r} is now {_FORMER_NAMES[name]!r}")
+        if name in former:
+            raise InvalidInput(f"model {name!r} is now {former[name]!r}")
         if name not in known:
             raise UnknownName.among(known, kind="model", name=name)
     return tuple(model for model in COMPARED_MODELS if not selected or model.name in selected)

@@ -10,26 +10,14 @@ from contextlib import contextmanager
 from dataclasses import replace
 from functools import cache
 from math import pi
+from pathlib import Path
 from typing import Final
 
 from sonolube.checks import Floats
 from sonolube.errors import ModelRangeWarning, OutsideRange
 from sonolube.models import friction
 from sonolube.models.contact import RoughContact, normal_stiffness, separation
-from sonolube.validation.model_variant import (
-    APPROACH,
-    APPROACH_RATIO,
-    IN_PLANE_MOTION,
-    MINDLIN_RATIO,
-    NORMAL_VIBRATION,
-    SINUSOIDAL_VIBRATION,
-    SLIP_LENGTH,
-    VIBRATION_DIRECTION,
-    ConditionColumns,
-    ModelVariant,
-    VibratedRig,
-    per_rig,
-)
+from sonolube.validation.model_variant import ConditionColumns, VibratedRig, read_variants
 from sonolube.validation.published_tests import FrictionTest, InPlaneTest
 
 _Vibrated = FrictionTest | ConditionColumns
@@ -206,102 +194,17 @@ def _springs(test: FrictionTest | VibratedRig, mindlin_ratio: float | None) -> f
     )
 
 
-_POPOV_2017: Final = "M. Popov, V. L. Popov and N. V. Popov 2017"
-_IN_PLANE_FRACTION: Final = IN_PLANE_MOTION[0]
-
-LONGITUDINAL_VIBRATION: Final[tuple[str, ...]] = (
-    "contact",
-    "normal_load",
-    "friction_coefficient",
-    "in_plane_amplitude",
-    "frequency",
-    "sliding_speed",
-)
-"""Inputs of a contact that vibrates along the sliding."""
-
-COULOMB_AND_SPRING_VARIANTS: Final = (
-    ModelVariant(
-        "coulomb-in-plane",
-        "Coulomb friction, the vibration within the plane as measured",
-        _coulomb_in_plane,
-        required_inputs=("sliding_speed", "vibration_velocity", "vibration_direction"),
-        source="Littmann 2001; Kumar 2004",
-    ),
-    ModelVariant(
-        "coulomb-longitudinal-fitted",
-        "Coulomb friction, an unmeasured motion along the sliding alone",
-        _coulomb_longitudinal,
-        (_IN_PLANE_FRACTION,),
-        required_inputs=SINUSOIDAL_VIBRATION,
-        source="Littmann, Storck and Wallaschek 2001",
-        takes_columns=True,
-    ),
-    ModelVariant(
-        "coulomb-oblique-fitted",
-        "Coulomb friction, an unmeasured motion within the plane alone",
-        _coulomb_oblique,
-        (_IN_PLANE_FRACTION, VIBRATION_DIRECTION),
-        required_inputs=SINUSOIDAL_VIBRATION,
-        source="Kumar and Hutchings 2004",
-        takes_columns=True,
-    ),
-    ModelVariant(
-        "spring-flat",
-        "springs of constant stiffness, load over stiffness of the rough contact",
-        _spring_flat,
-        source=_POPOV_2017,
-    ),
-    ModelVariant(
-        "spring-parabolic",
-        "springs of a Hertzian contact of the same load and stiffness",
-        _spring_parabolic,
-        source=_POPOV_2017,
-    ),
-    ModelVariant(
-        "spring-approximate",
-        "the published approximation for springs of constant stiffness",
-        _spring_approximate,
-        source=_POPOV_2017,
-    ),
-    ModelVariant(
-        "spring-flat-fitted",
-        "springs of constant stiffness, approach and ratio of stiffnesses fitted",
-        _spring_flat,
-        (APPROACH, MINDLIN_RATIO),
-        source=_POPOV_2017,
-        takes_columns=True,
-    ),
-    ModelVariant(
-        "spring-flat-on-roughness",
-        "springs of constant stiffness, slip length and approach over R_q fitted",
-        _spring_flat_on_roughness,
-        (SLIP_LENGTH, APPROACH_RATIO),
-        source=_POPOV_2017,
-        takes_columns=True,
-    ),
-    ModelVariant(
-        "spring-in-plane",
-        "springs of constant stiffness, with in-plane motion on the rig of Table 4.2",
-        _spring_in_plane,
-        (MINDLIN_RATIO, *per_rig(IN_PLANE_MOTION, "power map")),
-        source="M. Popov and Q. Li 2018",
-        takes_columns=True,
-    ),
-    ModelVariant(
-        "spring-longitudinal",
-        "springs of constant stiffness, the measured motion along the sliding alone",
-        _spring_longitudinal,
-        required_inputs=LONGITUDINAL_VIBRATION,
-        source="V. L. Popov, Starcevic and Filippov 2010",
-    ),
-    ModelVariant(
-        "elliptical",
-        "rigid friction on an ellipse, an unmeasured motion along the sliding",
-        _elliptical,
-        IN_PLANE_MOTION,
-        required_inputs=NORMAL_VIBRATION,
-        source="D 2.1.4",
-        takes_columns=True,
-    ),
+COULOMB_AND_SPRING_VARIANTS: Final = read_variants(
+    Path(__file__).with_suffix(".toml"),
+    coulomb_in_plane=_coulomb_in_plane,
+    coulomb_longitudinal=_coulomb_longitudinal,
+    coulomb_oblique=_coulomb_oblique,
+    spring_flat=_spring_flat,
+    spring_flat_on_roughness=_spring_flat_on_roughness,
+    spring_parabolic=_spring_parabolic,
+    spring_approximate=_spring_approximate,
+    spring_in_plane=_spring_in_plane,
+    spring_longitudinal=_spring_longitudinal,
+    elliptical=_elliptical,
 )
 """Variants of Coulomb friction and of spring-coupled contacts."""

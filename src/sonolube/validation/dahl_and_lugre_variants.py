@@ -2,6 +2,7 @@
 
 from functools import cache
 from math import pi, sqrt
+from pathlib import Path
 from typing import Final
 
 import numpy as np
@@ -9,21 +10,9 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.models import friction
 from sonolube.models.contact import RoughContact, separation
-from sonolube.validation.coulomb_and_spring_variants import (
-    LONGITUDINAL_VIBRATION,
-    approach_at_rest,
-    load_over_stiffness,
-)
+from sonolube.validation.coulomb_and_spring_variants import approach_at_rest, load_over_stiffness
 from sonolube.validation.friction_model_variants import balanced_motion
-from sonolube.validation.model_variant import (
-    IN_PLANE_MOTION,
-    MINDLIN_RATIO,
-    STRIBECK_CURVE,
-    ConditionColumns,
-    ModelVariant,
-    VibratedRig,
-    per_rig,
-)
+from sonolube.validation.model_variant import ConditionColumns, VibratedRig, read_variants
 from sonolube.validation.published_tests import FrictionTest
 
 _SETTLING_PERIODS: Final = 8  # natural periods of a driven holder before its force is averaged
@@ -121,48 +110,7 @@ def _balanced_separation(contact: RoughContact, load: float, amplitude: float, f
     return float(separation(contact, normal_load=load)) + rise
 
 
-_DAHL_SOURCE: Final = "D 3.10 and 3.11; Dahl 1968"
-_LUGRE_SOURCE: Final = "Canudas de Wit, Olsson, Astrom and Lischinsky 1995"
-_IN_PLANE_POWER_MAP: Final = per_rig(IN_PLANE_MOTION, "power map")
-
-DAHL_AND_LUGRE_VARIANTS: Final = (
-    ModelVariant(
-        "dahl",
-        "the law of Dahl with the stiffness of the cube about the load-balanced mean gap",
-        _dahl,
-        source=_DAHL_SOURCE,
-        takes_columns=True,
-    ),
-    ModelVariant(
-        "dahl-in-plane",
-        "the same, with in-plane motion on the rig of Table 4.2",
-        _dahl,
-        _IN_PLANE_POWER_MAP,
-        source=_DAHL_SOURCE,
-        takes_columns=True,
-    ),
-    ModelVariant(
-        "lugre",
-        "the law of LuGre, its limit after the balanced load, stiffness of the bristles fitted",
-        _lugre,
-        (MINDLIN_RATIO,),
-        source=_LUGRE_SOURCE,
-        takes_columns=True,
-    ),
-    ModelVariant(
-        "lugre-in-plane",
-        "the same, Stribeck curve fitted, with in-plane motion on the rig of Table 4.2",
-        _lugre,
-        (MINDLIN_RATIO, *STRIBECK_CURVE, *_IN_PLANE_POWER_MAP),
-        source=_LUGRE_SOURCE,
-        takes_columns=True,
-    ),
-    ModelVariant(
-        "dahl-driven",
-        "a mass on the law of Dahl behind an elastic drive with a damping ratio of 0.2, vibrated along",
-        _dahl_driven,
-        required_inputs=(*LONGITUDINAL_VIBRATION, "holder_stiffness", "holder_mass"),
-        source="Gutowski and Leus 2012",
-    ),
+DAHL_AND_LUGRE_VARIANTS: Final = read_variants(
+    Path(__file__).with_suffix(".toml"), dahl=_dahl, lugre=_lugre, dahl_driven=_dahl_driven
 )
 """Variants of the laws of Dahl and of LuGre."""

@@ -10,7 +10,7 @@ values and bounds with their reasons are in free_parameters.toml.
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from math import inf, isfinite, pi
 from pathlib import Path
 from types import MappingProxyType
@@ -21,16 +21,13 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.models.contact import RoughContact, separation
-from sonolube.models.friction import FrictionModel, MeanGap
+from sonolube.models.friction import FRICTION_MODELS, FrictionModel, MeanGap
 from sonolube.models.friction.models.range_check import checked_ratio
 from sonolube.rig import Rig, steady_vibration
 from sonolube.validation.published_tests import Conditions
 
 RIGS: Final = {"tribometer": "ACDEF", "power map": "B", "welder": "G", "flextensional": "H"}
 """Letters of the sets measured on each rig."""
-
-FITTED_RIGS: Final = ("tribometer", "power map", "welder")
-"""Rigs whose sets are fitted; the amplitude of the flextensional actuator at resonance is not known."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -89,19 +86,11 @@ def _parameters() -> dict[str, FreeParameter]:
 
 
 _PARAMETERS: Final = _parameters()
-NOMINAL_AREA_FACTOR: Final = _PARAMETERS["nominal_area_factor"]
-FRICTION_COEFFICIENT_FACTOR: Final = _PARAMETERS["friction_coefficient_factor"]
-AMPLITUDE_FRACTION: Final = _PARAMETERS["amplitude_fraction"]
-MEMORY_LENGTH: Final = _PARAMETERS["memory_length"]
-DECAY_CONSTANT: Final = _PARAMETERS["decay_constant"]
-SLIP_LENGTH: Final = _PARAMETERS["slip_length"]
-APPROACH_RATIO: Final = _PARAMETERS["approach_ratio"]
-HOLDER_COMPLIANCE: Final = _PARAMETERS["holder_compliance"]
-IN_PLANE_MOTION: Final = (_PARAMETERS["in_plane_fraction"], _PARAMETERS["in_plane_phase"])
-VIBRATION_DIRECTION: Final = _PARAMETERS["vibration_direction"]
-APPROACH: Final = _PARAMETERS["approach"]
-MINDLIN_RATIO: Final = _PARAMETERS["mindlin_ratio"]
-STRIBECK_CURVE: Final = (_PARAMETERS["static_friction_ratio"], _PARAMETERS["stribeck_velocity"])
+MEMORY_LENGTH: Final[FreeParameter] = _PARAMETERS["memory_length"]
+IN_PLANE_MOTION: Final[tuple[FreeParameter, FreeParameter]] = (
+    _PARAMETERS["in_plane_fraction"],
+    _PARAMETERS["in_plane_phase"],
+)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -152,14 +141,11 @@ REQUIRED_INPUTS: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
 )
 """Inputs that a model may require of the conditions: `meaning` in words, and `remedy` where own runs lack one."""
 
-SINUSOIDAL_VIBRATION: Final = ("vibration_amplitude", "frequency", "sliding_speed")
-"""Inputs of a model without contact."""
-
-NORMAL_VIBRATION: Final = ("contact", "normal_load", *SINUSOIDAL_VIBRATION)
-"""Inputs of a contact that vibrates along the normal."""
-
-NORMAL_VIBRATION_AND_FRICTION: Final = (*NORMAL_VIBRATION, "friction_coefficient")
-"""The same with the friction coefficient without vibration."""
+NORMAL_VIBRATION_AND_FRICTION: Final = (
+    *("contact", "normal_load", "vibration_amplitude"),
+    *("frequency", "sliding_speed", "friction_coefficient"),
+)
+"""Inputs of a contact that vibrates along the normal, with its friction coefficient without vibration."""
 
 _MIN_TOGETHER: Final = 8  # conditions, from which arrays are worth their making
 
@@ -204,6 +190,8 @@ class ModelVariant:
         Whether `ratio` takes `ConditionColumns` too, and then returns the ratios of all conditions.
     seen : SeenSets, optional
         Published tests that a fixed constant was taken from; none where absent.
+    former_name : str
+        Name that it had; empty where it never had another.
     """
 
     name: str
@@ -215,6 +203,7 @@ class ModelVariant:
     friction_model: type[FrictionModel] | None = None
     takes_columns: bool = False
     seen: SeenSets | None = None
+    former_name: str = ""
 
     @property
     def seen_constants(self) -> int:
@@ -275,6 +264,44 @@ class ModelVariant:
             if parameter.applies_to(conditions.set_name)
         )
         return _cached_ratio(self.ratio, conditions, applicable)
+
+
+def read_variants(path: Path, **ratios: Callable[..., SupportsFloat]) -> tuple[ModelVariant, ...]:
+    """Variants of a file, each with one of the functions by its name; with a friction model, that of this model.
+
+    Parameters of single rigs are in the groups of `rig_parameters`; `seen` names the variant with the constant fitted.
+    """
+    entries = tomllib.loads(path.read_text(encoding="utf-8"))
+    seen = {name: entry.pop("seen") for name, entry in entries.items() if "seen" in entry}
+    made = {name: _variant(name, ratios[entry.pop("ratio")], **entry) for name, entry in entries.items()}
+    for name, sets in seen.items():
+        made[name] = replace(made[name], seen=SeenSets(sets["sets"], made[sets["refitted"]]))
+    return tuple(made.values())
+
+
+def _variant(
+    name: str,
+    ratio: Callable[..., SupportsFloat],
+    *,
+    parameters: Sequence[str] = (),
+    rig_parameters: Sequence[Mapping[str, Sequence[str]]] = (),
+    required_inputs: Sequence[str] = NORMAL_VIBRATION_AND_FRICTION,
+    friction_model: str = "",
+    **others: Any,
+) -> ModelVariant:
+    """Variant of an entry of a file."""
+    model = FRICTION_MODELS[friction_model] if friction_model else None
+    own = [_PARAMETERS[each] for each in parameters]
+    for group in rig_parameters:
+        own += per_rig(tuple(_PARAMETERS[each] for each in group["parameters"]), *group["rigs"])
+    return ModelVariant(
+        name=name,
+        ratio=ratio if model is None else partial(ratio, model),
+        parameters=tuple(own),
+        required_inputs=tuple(required_inputs),
+        friction_model=model,
+        **others,
+    )
 
 
 @lru_cache(maxsize=2**16)

@@ -1,11 +1,13 @@
 """Sampled friction controller: PI control with feed-forward and anti-windup, and its export as C99 source and CSV.
 
-The C source of `sonolube.design.control.controller` repeats the function `next_level` line by line.
+The C source `controller_step.c` beside this module repeats the function `next_level` line by line; LEVEL stands there
+for the commanded quantity.
 """
 
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from sonolube.checks import require_positive
 from sonolube.design.control.friction_characteristic import FrictionCharacteristic, linear_characteristic
@@ -280,7 +282,8 @@ def _unit(quantity: CommandedQuantity) -> str:
 
 def _step_source(quantity: CommandedQuantity) -> str:
     """C source of the controller's step, which returns the commanded quantity."""
-    source = _STEP_SOURCE.strip().replace("LEVEL_MAXIMUM", f"SONOLUBE_HIGHEST_{quantity.word.upper()}")
+    source = Path(__file__).with_name("controller_step.c").read_text(encoding="utf-8").strip()
+    source = source.replace("LEVEL_MAXIMUM", f"SONOLUBE_HIGHEST_{quantity.word.upper()}")
     return source.replace("LEVEL_IN_UNITS", f"{quantity.word} in {_unit(quantity)}").replace("LEVEL", quantity.word)
 
 
@@ -303,44 +306,3 @@ double sonolube_next_frequency(double frequency, double phase) {{
     const double lowest = {_number(tracker.lowest_frequency)}, highest = {_number(tracker.highest_frequency)};
     return unlimited < lowest ? lowest : unlimited > highest ? highest : unlimited;
 }}"""
-
-
-_STEP_SOURCE = """
-typedef struct {
-    double integral;                             /* N */
-    double model_output[SONOLUBE_DEAD_TIME + 1]; /* N, the latest last */
-} sonolube_state;
-
-void sonolube_reset(sonolube_state *state) {
-    state->integral = 0.0;
-    for (int i = 0; i <= SONOLUBE_DEAD_TIME; i++) state->model_output[i] = SONOLUBE_INTRINSIC_FRICTION;
-}
-
-static double interpolated(double x, const double *abscissa, const double *ordinate) {
-    if (x <= abscissa[0]) return ordinate[0];
-    if (x >= abscissa[SONOLUBE_POINTS - 1]) return ordinate[SONOLUBE_POINTS - 1];
-    int low = 0, high = SONOLUBE_POINTS - 1;
-    while (high - low > 1) {
-        const int middle = low + (high - low) / 2;
-        if (abscissa[middle] <= x) low = middle;
-        else high = middle;
-    }
-    return ordinate[low]
-        + (ordinate[high] - ordinate[low]) / (abscissa[high] - abscissa[low]) * (x - abscissa[low]);
-}
-
-/* The LEVEL_IN_UNITS of the next interval, from the set-point and the measured friction force in N. */
-double sonolube_step(sonolube_state *state, double setpoint, double measured) {
-    const double base = SONOLUBE_FEED_FORWARD ? setpoint : SONOLUBE_INTRINSIC_FRICTION;
-    const double error = (SONOLUBE_FEED_FORWARD ? state->model_output[0] : setpoint) - measured;
-    const double command = base + SONOLUBE_PROPORTIONAL_GAIN * error + state->integral;
-    const double unsaturated = interpolated(SONOLUBE_INTRINSIC_FRICTION - command, force_reduction, LEVEL);
-    const double allowed = unsaturated < LEVEL_MAXIMUM ? unsaturated : LEVEL_MAXIMUM;
-    const double saturated = SONOLUBE_INTRINSIC_FRICTION - interpolated(allowed, LEVEL, force_reduction);
-    state->integral += SONOLUBE_INTEGRAL_GAIN * error + SONOLUBE_ANTI_WINDUP_GAIN * (saturated - command);
-    const double latest = state->model_output[SONOLUBE_DEAD_TIME];
-    for (int i = 0; i < SONOLUBE_DEAD_TIME; i++) state->model_output[i] = state->model_output[i + 1];
-    state->model_output[SONOLUBE_DEAD_TIME] = latest + SONOLUBE_LAG_COEFFICIENT * (setpoint - latest);
-    return allowed;
-}
-"""

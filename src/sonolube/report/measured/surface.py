@@ -1,6 +1,8 @@
 """Sheets of surface files: parameters of ISO 25178-2 and, of profiles, of ISO 21920, spectra and summits."""
 
 import math
+import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import partial
 from pathlib import Path
@@ -17,6 +19,9 @@ from sonolube.report.measured.sheet import captioned
 from sonolube.report.measured.surface_figures import WAVENUMBER, length_scale
 from sonolube.text.units import format_si, to_si
 
+_LABELS: Mapping[str, Mapping[str, str]] = tomllib.loads(
+    Path(__file__).with_name("surface_labels.toml").read_text(encoding="utf-8")
+)
 _PROFILE_BINS = 5000  # along the page, more than it resolves
 
 
@@ -48,19 +53,6 @@ def spectrum_figure(found: ProfileSpectrum, *, cutoff: float | None) -> Chart:
     filtered = () if cutoff is None else (Rule(value=1 / cutoff, colour="0.3", dash=1),)
     density = Axis("Power spectral density", "m³", logarithmic=True)
     return one_panel(WAVENUMBER, density, (curve, *filtered), size=(4.6, 3.2))
-
-
-_EVALUATED_LABELS = {
-    "arithmetic_mean_height": "a, arithmetic mean height",
-    "rms_height": "q, root-mean-square height",
-    "mean_section_height": "z, maximum height of a section, mean",
-    "mean_section_peak_height": "p, peak height of a section, mean",
-    "mean_section_pit_depth": "v, pit depth of a section, mean",
-    "total_height": "t, total height",
-    "skewness": "sk, skewness",
-    "kurtosis": "ku, kurtosis",
-    "mean_profile_element_spacing": "sm, mean profile element spacing",
-}
 
 
 def is_profile(surface: HeightMap) -> bool:
@@ -102,11 +94,11 @@ def profile_sheet(
 def _parameters(found: ProfileEvaluation) -> sheet.Sheet:
     """Parameters of the roughness profile, R, or of the primary profile, P."""
     letter = "P" if found.long_cutoff_length is None else "R"
-    values = {name: getattr(found.parameters, name) for name in _EVALUATED_LABELS}
+    values = {name: getattr(found.parameters, name) for name in _LABELS["evaluated_profile"]}
     missing = () if values["mean_profile_element_spacing"] else (f"{letter}sm: no complete profile element",)
     return sheet.Sheet(
         values=tuple(
-            sheet.quantity_value(name, value, label=letter + _EVALUATED_LABELS[name])
+            sheet.quantity_value(name, value, label=letter + _LABELS["evaluated_profile"][name])
             for name, value in values.items()
             if value is not None
         ),
@@ -136,47 +128,6 @@ def _spectrum(found: ProfileEvaluation, spacing: float) -> sheet.Sheet:
     return sheet.Sheet(figures=(spectrum_figure(surfaces.profile_spectrum(row), cutoff=found.long_cutoff_length),))
 
 
-_LABELS = {
-    "arithmetic_mean_height": "Sa, arithmetic mean height",
-    "rms_height": "Sq, root-mean-square height",
-    "maximum_peak_height": "Sp, maximum peak height",
-    "maximum_pit_depth": "Sv, maximum pit depth",
-    "total_height": "Sz, maximum height",
-    "skewness": "Ssk, skewness",
-    "kurtosis": "Sku, kurtosis",
-    "rms_gradient": "Sdq, root-mean-square gradient",
-    "developed_interfacial_area_ratio": "Sdr, developed interfacial area ratio",
-    "autocorrelation_length": "Sal, autocorrelation length",
-    "texture_aspect_ratio": "Str, texture aspect ratio",
-    "texture_direction": "Std, texture direction",
-    "core_height": "Sk, core height",
-    "reduced_peak_height": "Spk, reduced peak height",
-    "reduced_valley_depth": "Svk, reduced valley depth",
-    "peak_material_ratio": "Smr1, peak material ratio",
-    "valley_material_ratio": "Smr2, valley material ratio",
-    "peak_material_volume": "Vmp, peak material volume",
-    "core_material_volume": "Vmc, core material volume",
-    "core_void_volume": "Vvc, core void volume",
-    "valley_void_volume": "Vvv, valley void volume",
-    "peak_density": "Spd, density of peaks",
-    "mean_peak_curvature": "Spc, arithmetic mean peak curvature",
-}
-_PROFILE_LABELS = {
-    "arithmetic_mean_height": "Ra",
-    "rms_height": "Rq",
-    "mean_section_peak_height": "Rp",
-    "mean_section_pit_depth": "Rv",
-    "mean_section_height": "Rz",
-    "maximum_peak_height": "Rpt",
-    "maximum_pit_depth": "Rvt",
-    "total_height": "Rt",
-}
-_SAMPLING_LABELS = {
-    "sampling_interval": "Interval",
-    "rms_height": "Deviation of summit heights",
-    "summit_radius": "Summit radius",
-    "summit_density": "Summit density",
-}
 _COARSENINGS = (1, 2, 4, 8)  # times the pixel, at which summits are sought
 
 
@@ -299,10 +250,10 @@ def _filtered(levelled: surfaces.HeightMap, settings: SurfaceSettings) -> surfac
 
 def _part(record: object) -> sheet.Sheet:
     """Areal parameters of a record, labelled with their symbols."""
-    names = [each.name for each in fields(record) if each.name in _LABELS]  # type: ignore[arg-type]
+    names = [each.name for each in fields(record) if each.name in _LABELS["areal"]]  # type: ignore[arg-type]
     small = not getattr(record, "decays_in_all_directions", True)
     return sheet.Sheet(
-        values=tuple(sheet.quantity_value(name, getattr(record, name), label=_LABELS[name]) for name in names),
+        values=tuple(sheet.quantity_value(name, getattr(record, name), label=_LABELS["areal"][name]) for name in names),
         caveats=("Str is an upper bound: the map is too small for its texture",) if small else (),
     )
 
@@ -328,12 +279,12 @@ def _profiles(surface: surfaces.HeightMap) -> sheet.Sheet:
         if min(surface.height.shape) > 1 or surface.height.shape[along == "rows"] > 1:
             found = surfaces.profile_statistics(surface, along=along)
             for kind, record in (("mean", found.mean), ("deviation", found.standard_deviation)):
-                values = (getattr(record, name) for name in _PROFILE_LABELS)
+                values = (getattr(record, name) for name in _LABELS["profiles"])
                 rows.append((f"{found.profile_count} {along}", kind, *values))
     columns = (
         sheet.Column("profiles", "Profiles"),
         sheet.Column("statistic", ""),
-        *sheet.quantity_columns(_PROFILE_LABELS),
+        *sheet.quantity_columns(_LABELS["profiles"]),
     )
     return sheet.Sheet(tables=(sheet.Table("profiles", "Profile parameters", columns, tuple(rows)),))
 
@@ -347,9 +298,9 @@ def _sampling(surface: surfaces.HeightMap) -> sheet.Sheet:
             found = surfaces.sampling_dependence(surface, sampling_interval=times * pixel)
         except InvalidInput:
             break
-        rows.append(tuple(float(getattr(found, name)[0]) for name in _SAMPLING_LABELS))
+        rows.append(tuple(float(getattr(found, name)[0]) for name in _LABELS["sampling"]))
     title = "Roughness for the contact models, by sampling interval"
-    table = sheet.Table("sampling", title, sheet.quantity_columns(_SAMPLING_LABELS), tuple(rows))
+    table = sheet.Table("sampling", title, sheet.quantity_columns(_LABELS["sampling"]), tuple(rows))
     return sheet.Sheet(tables=(table,)) if rows else sheet.Sheet()
 
 

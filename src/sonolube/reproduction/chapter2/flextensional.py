@@ -20,7 +20,7 @@ from sonolube.figure import LINES, MARKERS, ReportFigure
 from sonolube.models.actuator import linear_amplifier_power
 from sonolube.models.contact import decay_length, separation
 from sonolube.models.friction import EMPIRICAL_MEMORY_LENGTH, sine_stick_slip_ratio
-from sonolube.reproduction.plots import axes_row, curve_style, draw_printed, line_style
+from sonolube.reproduction.plots import axes_row, curve_style, draw_printed, line_style, report_figure
 from sonolube.reproduction.row import Row, RowKind, default_model_row, published_formula_row, undetermined_row
 from sonolube.validation.published_tests import FLEXTENSIONAL_GAINS, FrictionTest, friction_tests
 
@@ -163,24 +163,8 @@ def flextensional_figures() -> Iterator[ReportFigure]:
         "Asperity stick-slip with R_q of Table 3.2 and a coefficient of friction of "
         f"{slow_test().friction_coefficient:g}, steel on steel in D 3.1.4: neither is printed for this actuator"
     )
-    yield ReportFigure(
-        name="figure-2-13-voltage",
-        title="Flextensional actuator over its highest voltage",
-        caption=f"As D figure 2.13 (d) to (f), 5 mm/s. {assumed}. Gain at resonance {gain:.2g}, from the 70 % at 3.5 "
-        "mm/s. The pull is twice the friction of one plate; the reductions under the three loads coincide. All levels "
-        "have 4 V peak to peak (D 2.2.5) and so one stroke: only the power grows. Dashed: if they swung from zero. "
-        "Right: D 1.9, points of D 2.2.5. Friction over time, (a) to (c), is only drawn in D.",
-        draw=_over_voltage,
-    )
-    yield ReportFigure(
-        name="figure-2-14-speed",
-        title="Flextensional actuator over the sliding speed",
-        caption=f"As D figure 2.14, 2.6 N and 4 V peak to peak. {assumed}. Nor is the amplitude at resonance: solid "
-        f"with a gain of {gain:.2g}, at which the reduction at 3.5 mm/s is the printed one, dashed with the "
-        "quasi-static stroke. Markers on the curves: the seven speeds of D. Friction without vibration rises in D up "
-        "to 10 mm/s (dotted), by an amount that is only drawn; here it is constant.",
-        draw=_over_speed,
-    )
+    yield report_figure("figure-2-13-voltage", _over_voltage, assumed=assumed, gain=gain)
+    yield report_figure("figure-2-14-speed", _over_speed, assumed=assumed, gain=gain)
 
 
 def reduction(*, gain: ArrayLike, sliding_speed: ArrayLike) -> Floats:

@@ -27,7 +27,7 @@ from sonolube.reproduction.chapter2.poisson_horn import (
     printed_shape,
     printed_solid,
 )
-from sonolube.reproduction.plots import axes_row, line_style, single_axes
+from sonolube.reproduction.plots import axes_row, line_style, report_figure, single_axes
 from sonolube.reproduction.published_rigs import (
     HORNS,
     STEEL_ON_STEEL_NOTE,
@@ -50,43 +50,11 @@ _HORN_NOTE: Final = (
 
 def horn_figures() -> Iterator[ReportFigure]:
     """Figures of the horn."""
-    yield ReportFigure(
-        name="figure-2-3-horn-assumptions",
-        title="First axial mode under single assumptions",
-        caption="Computed, plain steel block with the constants of Table 3.1. Bands: change from either plain "
-        "block to the printed 20.8 kHz and 20.6 kHz of D 2.1.3; no single shape gives both, for the moduli and "
-        "densities put steel 2 % below aluminium, and D prints it 1 % above.",
-        draw=_assumptions,
-    )
-    yield ReportFigure(
-        name="figure-2-4-loci-by-elements",
-        title="Paths of three points on the horns' surfaces, by finite elements",
-        caption=f"Computed. {_HORN_NOTE} All paths are lines but for a hundredth of their length: losses of the "
-        "horn do not open them to the ellipses of D 3.25.",
-        draw=_paths,
-    )
-    yield ReportFigure(
-        name="figure-2-4-ellipses-along-the-face",
-        title="Semi-axes of the paths and phase along the horns' faces",
-        caption=f"Computed. {_HORN_NOTE} Points turn the same way all along the face, as energy flows one "
-        "way; D 3.25 has a lag of a quarter turn.",
-        draw=_ellipses,
-    )
-    yield ReportFigure(
-        name="table-2-1-friction-along-the-face",
-        title="Friction of a block that slides towards the node, along the horns' faces",
-        caption=f"Computed at 5 mm/s. {_HORN_NOTE} Springs of the contact of Table 3.1 with Mindlin's ratio. Below "
-        "zero the face drives the block: the motor region. Bands: transition regions of Table 2.1.",
-        draw=_friction,
-    )
-    yield ReportFigure(
-        name="table-2-1-node-of-the-steel-horn",
-        title="Node of the steel horn under single asymmetries",
-        caption="Computed, steel horn of the printed first mode; drives act on its right end. Band: transition "
-        "region of Table 2.1. A symmetric horn on its resonance has its node in the middle; driven below it, the "
-        "node moves towards the drive.",
-        draw=_nodes,
-    )
+    yield report_figure("figure-2-3-horn-assumptions", _assumptions)
+    yield report_figure("figure-2-4-loci-by-elements", _paths, horns=_HORN_NOTE)
+    yield report_figure("figure-2-4-ellipses-along-the-face", _ellipses, horns=_HORN_NOTE)
+    yield report_figure("table-2-1-friction-along-the-face", _friction, horns=_HORN_NOTE)
+    yield report_figure("table-2-1-node-of-the-steel-horn", _nodes)
 
 
 def _assumptions() -> "Figure":
@@ -219,16 +187,7 @@ def poisson_effect_rows() -> Iterator[Row]:
 
 def poisson_effect_figures() -> Iterator[ReportFigure]:
     """Figures of section 2.1."""
-    yield ReportFigure(
-        name="figure-2-4-loci",
-        title="Paths of three points on the waveguide's surface",
-        caption="Computed, D 3.22 and 3.25 at the amplitude of section 2.1.2: one inch left of the centre, at the "
-        "centre, one inch right of it. Full: a horn driven on one end, whose normal motion has no delay to the axial "
-        "one, so that the lag is zero on one side and half a turn on the other, and paths are lines. Broken: normal "
-        "motion a quarter turn ahead, the lag of D 3.25, which such a horn does not have, with the sign with which the "
-        "surface moves towards the centre while it is lowest, as the block did; the arrow shows the sense of motion.",
-        draw=_loci,
-    )
+    yield report_figure("figure-2-4-loci", _loci)
     yield from horn_figures()
 
 

@@ -20,7 +20,7 @@ from sonolube.figure import COLOURS, ReportFigure
 from sonolube.models.friction import dong_2015_half_period_ratio
 from sonolube.models.wear import cube_wear_rate, vibrating_cube_wear_rate
 from sonolube.reproduction import formulas
-from sonolube.reproduction.plots import curve_style, draw_printed, line_style, single_axes
+from sonolube.reproduction.plots import curve_style, draw_printed, line_style, report_figure, single_axes
 from sonolube.reproduction.row import Row, formula_row, published_formula_row, published_model_row, range_rows
 from sonolube.validation.contacts import wear_contact
 
@@ -220,34 +220,10 @@ _OFFSET: Final = 1.2  # mm/s between points of one speed, so that none covers an
 
 def tribometer_figures() -> Iterator[ReportFigure]:
     """Figures of section 2.3."""
-    yield ReportFigure(
-        name="figure-2-20-friction-against-speed",
-        title="Friction against sliding speed",
-        caption="Points and scatter: Table 2.3. Triangles: the cube (Table 3.2, 2.5 um) times the friction without "
-        "vibration. Its ratio is the same at every speed, so that it misses the benefit that fades with speed.",
-        draw=_friction_against_speed,
-    )
-    yield ReportFigure(
-        name="figure-2-22-fluctuation-against-speed",
-        title="Stick-slip fluctuation of friction against sliding speed",
-        caption="Root mean square of the fluctuation and its scatter, Table 2.3.",
-        draw=_fluctuation_against_speed,
-    )
-    yield ReportFigure(
-        name="figure-2-27-reductions-against-speed",
-        title="Reductions of friction, fluctuation and wear against sliding speed",
-        caption="Full points: reductions of the forces and fluctuations of Table 2.3 and of the wear rates of "
-        "Table 2.5; bars: the propagated scatter of Table 2.3. Open circles: the friction reductions printed in "
-        "Table 2.5. Points of one speed are drawn side by side.",
-        draw=_reductions_against_speed,
-    )
-    yield ReportFigure(
-        name="table-2-7-wear-reduction",
-        title="Wear reduction against revolutions",
-        caption="Points: wear rates of Table 2.7. Line: the cube (Table 3.2, 2.5 um), D 3.26 averaged over the "
-        "separating half period; it does not depend on the distance.",
-        draw=_wear_reduction_against_revolutions,
-    )
+    yield report_figure("figure-2-20-friction-against-speed", _friction_against_speed)
+    yield report_figure("figure-2-22-fluctuation-against-speed", _fluctuation_against_speed)
+    yield report_figure("figure-2-27-reductions-against-speed", _reductions_against_speed)
+    yield report_figure("table-2-7-wear-reduction", _wear_reduction_against_revolutions)
 
 
 def _friction_against_speed() -> "Figure":

@@ -29,7 +29,7 @@ from sonolube.figure import COLOURS, ReportFigure
 from sonolube.models.contact import SphereOnFlat, hertz_mean_pressure, hertz_peak_pressure, tip_radius_for_pressure
 from sonolube.reproduction import formulas
 from sonolube.reproduction.chapter2.tribometer import reductions_of_table_2_3, wear_reductions
-from sonolube.reproduction.plots import single_axes
+from sonolube.reproduction.plots import report_figure, single_axes
 from sonolube.reproduction.row import (
     Row,
     default_model_row,
@@ -259,12 +259,7 @@ def material_pair_rows() -> Iterator[Row]:
 
 def material_pair_figures() -> Iterator[ReportFigure]:
     """Figures of section 2.5."""
-    yield ReportFigure(
-        name="table-2-14-pairs",
-        title="Reductions of friction and wear for six pairs of materials",
-        caption="Pin on disc, as printed in Table 2.14. Where titanium takes part, wear did not fall.",
-        draw=_pairs,
-    )
+    yield report_figure("table-2-14-pairs", _pairs)
 
 
 def _settings() -> Iterator[Row]:

@@ -28,7 +28,7 @@ from sonolube.models.friction import (
 )
 from sonolube.reproduction.chapter2 import flextensional
 from sonolube.reproduction.chapter2.welder import printed_forces
-from sonolube.reproduction.plots import axes_row, line_style, single_axes
+from sonolube.reproduction.plots import axes_row, line_style, report_figure, single_axes
 from sonolube.validation.published_tests import friction_tests
 
 if TYPE_CHECKING:
@@ -54,23 +54,9 @@ _GAUGE: Final = (
 
 def welder_figures() -> Iterator[ReportFigure]:
     """Figures of section 2.4."""
-    yield ReportFigure(
-        name="figure-2-32-calibration",
-        title="Calibration of friction over the deflection of the waveguide",
-        caption="As D figure 2.32, of which no number is printed. The readings are generated, for pulls released at "
-        f"five deflections: {_GAUGE}, all assumed. Where the release begins decides the way back, so that one curve "
-        "for loading and one for unloading (dashed) do not hold; Preisach's model, with the history of the deflection, "
-        "does.",
-        draw=_calibration,
-    )
-    yield ReportFigure(
-        name="figure-2-33-welder-friction",
-        title="Deflection of the waveguide and friction in time",
-        caption="As D figure 2.33. Forces and rotation are of Tables 2.8 and 2.9, whose ranges are the bands: the "
-        "friction swings through them once a turn. Deflections are those at which the waveguide of figure 2.32 "
-        f"({_GAUGE}; assumed) carries these forces, converted by its calibration. Vibration from {_VIBRATED[0]:g} to "
-        f"{_VIBRATED[1]:g} s, assumed, and 11 turns in all. Dashed: asperity stick-slip, 20 kHz and 11.46 µm.",
-        draw=_friction_in_time,
+    yield report_figure("figure-2-32-calibration", _calibration, gauge=_GAUGE)
+    yield report_figure(
+        "figure-2-33-welder-friction", _friction_in_time, gauge=_GAUGE, first=_VIBRATED[0], last=_VIBRATED[1]
     )
 
 
@@ -233,17 +219,7 @@ def stick_slip_ratio(tip: int) -> float:
 
 def metal_forming_figures() -> Iterator[ReportFigure]:
     """Figure of section 2.4.1."""
-    yield ReportFigure(
-        name="figures-2-28-2-29-metal-forming",
-        title="Mechanisms of ultrasonic metal forming, by models",
-        caption="D figures 2.28 and 2.29 are diagrams of the literature; here, its mechanisms as far as they have "
-        "models. Left: superposition of steady and oscillating stress; the tool parts from the work beyond half the "
-        "yield strength (dotted). Middle: acoustic softening. The intensity of the 40 % on zinc is not printed: its "
-        "point lies where the curve has that ratio. Right: the vector of friction turned by vibration along and across "
-        "the sliding. Lines: coefficients that simulations of extrusion assumed, over the 0.1 without vibration (D "
-        "2.4.1). Swaging, solid-like films and metallurgical changes have no model here.",
-        draw=_mechanisms,
-    )
+    yield report_figure("figures-2-28-2-29-metal-forming", _mechanisms)
 
 
 def zinc_intensity() -> float:

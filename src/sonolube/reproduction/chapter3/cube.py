@@ -24,7 +24,15 @@ from sonolube.models.contact import (
 )
 from sonolube.models.friction import dong_2015_half_period_ratio
 from sonolube.models.wear import cube_wear_rate, full_period_wear_ratio, vibrating_cube_wear_rate
-from sonolube.reproduction.plots import axes_row, draw_measured, draw_printed, line_style, point_style, single_axes
+from sonolube.reproduction.plots import (
+    axes_row,
+    draw_measured,
+    draw_printed,
+    line_style,
+    point_style,
+    report_figure,
+    single_axes,
+)
 from sonolube.reproduction.published_rigs import STEEL_ON_STEEL_NOTE, Horn, poisson_friction_ratio, without_yielding
 from sonolube.reproduction.row import (
     Row,
@@ -210,50 +218,12 @@ _PAIRS: tuple[tuple[str, Bodies], ...] = (("aluminium on steel", "aluminium_stee
 
 def cube_figures() -> Iterator[ReportFigure]:
     """Figures of sections 3.1 and 3.2."""
-    yield ReportFigure(
-        name="figure-3-2a-separation",
-        title="Separation against load",
-        caption="Yielding asperities let the surfaces come closer. Under exponential heights the difference of "
-        "the models is the same at every load: 6.8 um for aluminium on steel, 9.0 um for steel on steel. "
-        "Computed from Table 3.1; circles: separations stated in section 3.1.4 at 40 N.",
-        draw=_separations,
-    )
-    yield ReportFigure(
-        name="figure-3-2b-real-area",
-        title="Real contact area against load",
-        caption="In both models the area is proportional to the load, so that it grows sixfold from 40 to 240 N. "
-        "Computed from Table 3.1.",
-        draw=_areas,
-    )
-    yield ReportFigure(
-        name="figure-3-4-friction-reduction",
-        title="Friction reduction of the Poisson-effect tests",
-        caption="Lines: the cube over the separating half period at the amplitude that section 2.1.2 states, and "
-        "at the one that section 4.3.5 gives for the same welder. Bands: the ranges that the text states for the "
-        "tests, whose single points are not available.",
-        draw=_draw_reductions,
-    )
-    yield ReportFigure(
-        name="height-laws",
-        title="Load against separation under four laws",
-        caption="The surfaces of Table 3.1 under exponential and Gaussian heights, elastic and elastic-plastic. "
-        "Shaded: range in which the exponential law agrees with the Gaussian one within a factor of two.",
-        draw=_height_laws,
-    )
-    yield ReportFigure(
-        name="tables-3-3-and-3-4-wear",
-        title="Wear rates of test and model",
-        caption="Points: Tables 3.3 and 3.4. Lines: the cube with Table 3.2 and 2.5 um, which depends on "
-        "neither speed nor number of revolutions.",
-        draw=_wear_rates,
-    )
-    yield ReportFigure(
-        name="friction-ratio-against-amplitude",
-        title="Friction ratio of the cube against amplitude, and of the tests",
-        caption="The cube's friction ratio depends on amplitude alone; the tests at 2.5 um (Table 2.3, with "
-        "the scatter stated there) depend on the sliding speed, which only a time-dependent model can reproduce.",
-        draw=_ratio_against_amplitude,
-    )
+    yield report_figure("figure-3-2a-separation", _separations)
+    yield report_figure("figure-3-2b-real-area", _areas)
+    yield report_figure("figure-3-4-friction-reduction", _draw_reductions)
+    yield report_figure("height-laws", _height_laws)
+    yield report_figure("tables-3-3-and-3-4-wear", _wear_rates)
+    yield report_figure("friction-ratio-against-amplitude", _ratio_against_amplitude)
 
 
 def _separations() -> "Figure":

@@ -13,7 +13,7 @@ from sonolube.facts.published import PrintedNumber, published_value, si_value
 from sonolube.figure import COLOURS, ReportFigure
 from sonolube.models.contact import cube_tangential_stiffness, decay_length, normal_force, separation
 from sonolube.reproduction.chapter3 import tribometer_response
-from sonolube.reproduction.plots import axes_row, line_style
+from sonolube.reproduction.plots import axes_row, line_style, report_figure
 from sonolube.reproduction.published_rigs import IDENTIFIED_NOTE, tribometer_rig
 from sonolube.reproduction.row import Row, default_model_row, published_formula_row, published_model_row
 from sonolube.rig import operating_points
@@ -235,49 +235,17 @@ def _percents(errors: Floats) -> str:
 
 def parametric_study_figures() -> Iterator[ReportFigure]:
     """Figures of sections 3.3.4 and 3.3.5."""
-    yield ReportFigure(
-        name="figure-3-13-start-up",
-        title="Start-up of the tribometer",
-        caption="Tip and reaction mass from rest at 28 V and 22 kHz; bands are the extremes of each period. The "
-        f"stack settles in a millisecond, the arm in some thirty. {IDENTIFIED_NOTE}.",
-        draw=_draw_start_up,
+    yield report_figure("figure-3-13-start-up", _draw_start_up, identified=IDENTIFIED_NOTE)
+    yield report_figure("figure-3-15-voltage", _draw_voltage)
+    yield report_figure("figure-3-16-speed", lambda: draw_chart(speed_chart(tribometer_response.response_over_speed())))
+    yield report_figure(
+        "figure-3-17-frequency", lambda: draw_chart(frequency_chart(tribometer_response.response_over_frequency()))
     )
-    yield ReportFigure(
-        name="figure-3-15-voltage",
-        title="Drive voltage",
-        caption="The mean rises with the vibration until the mean force is the load again, so that the contact "
-        "parts above rather than presses below. Asperity stick-slip, 22 kHz, 20.3 mm/s. Text of D 3.3.5: "
-        "hopping above 3.8 µm, and friction falls significantly up to 20 V.",
-        draw=_draw_voltage,
+    yield report_figure(
+        "figure-3-17-least-power", lambda: draw_chart(power_chart(tribometer_response.least_power_over_frequency()))
     )
-    yield ReportFigure(
-        name="figure-3-16-speed",
-        title="Sliding speed",
-        caption="Faster sliding leaves less reduction at every voltage. Against the velocity ratio the curves do "
-        "not coincide, as those of a kinematic friction model would: contact memory is a second length.",
-        draw=lambda: draw_chart(speed_chart(tribometer_response.response_over_speed())),
-    )
-    yield ReportFigure(
-        name="figure-3-17-frequency",
-        title="Drive frequency",
-        caption="Around the resonance friction falls in a “v”; over the amplifier's power the tips of the “v”s "
-        "form the envelope that the text describes. Asperity stick-slip, 20.3 mm/s.",
-        draw=lambda: draw_chart(frequency_chart(tribometer_response.response_over_frequency())),
-    )
-    yield ReportFigure(
-        name="figure-3-17-least-power",
-        title="Voltage and power for one reduction",
-        caption="Voltage and powers at the friction of the tests' 28 V at 22 kHz. The amplifier's power has its "
-        "minimum at resonance; the dissipated power does not, for it is proportional to the square of the "
-        "frequency at a given amplitude. Lines end with the last frequencies at which 200 V suffice.",
-        draw=lambda: draw_chart(power_chart(tribometer_response.least_power_over_frequency())),
-    )
-    yield ReportFigure(
-        name="figure-3-18-waveform",
-        title="Waveform",
-        caption="0 to 200 V at 22 kHz. The tip moves as a sine under all four waveforms, with the amplitude of "
-        "their fundamentals: 4/π (square), 1, 8/π² (triangle) and 2/π (sawtooth).",
-        draw=lambda: draw_chart(waveform_chart(tribometer_response.response_over_waveform())),
+    yield report_figure(
+        "figure-3-18-waveform", lambda: draw_chart(waveform_chart(tribometer_response.response_over_waveform()))
     )
 
 

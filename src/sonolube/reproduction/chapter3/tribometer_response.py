@@ -13,7 +13,7 @@ from sonolube.facts.published import published_number, si_value
 from sonolube.figure import ReportFigure
 from sonolube.models.contact import cube_tangential_stiffness, separation
 from sonolube.models.dynamics import modes
-from sonolube.reproduction.plots import axes_row, line_style
+from sonolube.reproduction.plots import axes_row, line_style, report_figure
 from sonolube.reproduction.published_rigs import IDENTIFIED_NOTE, tribometer_rig
 from sonolube.rig import (
     StartUp,
@@ -201,16 +201,7 @@ class VibrationPeriod:
 
 def vibration_period_figures() -> Iterator[ReportFigure]:
     """Figure of one period."""
-    yield ReportFigure(
-        name="figure-3-15-period",
-        title="Velocity, tangential stiffness and friction in one period",
-        caption="As D figure 3.15 (b) to (d): the computed motion, and the cube on it, 3 N, 22 kHz and 20.3 mm/s, "
-        "stiffness by D 3.44, friction by D 3.47 with the resultant velocity. Both peak where the bodies are closest, "
-        "as in D; their scales are logarithmic, and what is below a ten-thousandth is not drawn. The legend has "
-        "the mean of this friction, D 3.48: it grows with the voltage, beyond that without vibration, and other models "
-        f"take its place. {IDENTIFIED_NOTE}.",
-        draw=_period,
-    )
+    yield report_figure("figure-3-15-period", _period, identified=IDENTIFIED_NOTE)
 
 
 @cache

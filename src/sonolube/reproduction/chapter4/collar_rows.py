@@ -31,7 +31,7 @@ from sonolube.reproduction.chapter4.collar import (
     pulled_rod,
     response_model,
 )
-from sonolube.reproduction.plots import axes_row, line_style, single_axes
+from sonolube.reproduction.plots import axes_row, line_style, report_figure, single_axes
 from sonolube.reproduction.row import (
     Row,
     RowKind,
@@ -213,33 +213,9 @@ def collar_figures() -> Iterator[ReportFigure]:
     """Figures of section 4.5; none if a package of the finite elements is missing."""
     if finite_elements_missing():
         return
-    yield ReportFigure(
-        name="figures-4-51-4-53-collar-impedance",
-        title="Impedance of the collar",
-        caption="Left, figure 4.51: base free and clamped, top closed. Right, figure 4.53: top closed and open, "
-        f"base free. {_SIZES} Closed, two pairs of half the coupling and less lie below the main one, the only "
-        "one in D; open, one is distinct, while D has three. Below 15 kHz the model has pairs that D does not "
-        "mention. The base is rigidly clamped by its whole lower face.",
-        draw=_impedances,
-    )
-    yield ReportFigure(
-        name="figure-4-55-collar-amplitudes",
-        title="Amplitudes of the collar over voltage",
-        caption="Top open, each at its own resonance: the flat of the inner ring, and the base under the stack. "
-        f"{_SIZES} Linear, as measured. The base moves a twentieth as much as the ring, clamped a fifth. "
-        "Clamping raises the ring's amplitude by less than a tenth, while in D it is significantly higher: the "
-        "mode is that of the ring and the base is heavy. All amplitudes depend on the losses, which are assumed.",
-        draw=_amplitudes,
-    )
-    yield ReportFigure(
-        name="figure-4-57-collar-pull",
-        title="A rod pulled through the collar",
-        caption="28 V peak to peak at the resonance, multi-scale model with the structure of the finite elements. "
-        f"{_SIZES} Load assumed {LOAD_AT_ENDS:g} times as high at the ends as in the middle; a higher load "
-        "detunes the resonance and leaves less amplitude, so that friction falls least at the ends. The "
-        "reduction of the work depends on the speed, which is only drawn in D.",
-        draw=_pulled_rod,
-    )
+    yield report_figure("figures-4-51-4-53-collar-impedance", _impedances, sizes=_SIZES)
+    yield report_figure("figure-4-55-collar-amplitudes", _amplitudes, sizes=_SIZES)
+    yield report_figure("figure-4-57-collar-pull", _pulled_rod, sizes=_SIZES, load=LOAD_AT_ENDS)
 
 
 def _impedances() -> "Figure":

@@ -13,7 +13,7 @@ from sonolube.facts.published import column_numbers, published_number, published
 from sonolube.figure import ReportFigure, subplots
 from sonolube.models import friction
 from sonolube.reproduction.chapter4.power_rows import nominal_pressure_rows, power_row
-from sonolube.reproduction.plots import axes_row, line_style
+from sonolube.reproduction.plots import axes_row, line_style, report_figure
 from sonolube.reproduction.row import Row, RowKind, default_model_row, undetermined_row
 
 if TYPE_CHECKING:
@@ -59,15 +59,11 @@ def lubrication_rows() -> Iterator[Row]:
 
 def lubrication_figures() -> Iterator[ReportFigure]:
     """Figures of section 4.2."""
-    yield ReportFigure(
-        name="figure-4-27-lubrication-regimes",
-        title="Best method of lubrication over speed and stress",
-        caption="Left: friction over that of the dry contact at 48 MPa. Right: method of the lowest friction; "
-        f"vibration counts in addition to a lubricant if it reduces friction by {100 * _SMALLEST_GAIN:g} %. Load "
-        "sharing with asperity stick-slip; the friction of the film is inferred from the 90 mm/s of D; that fraction "
-        f"and the stress at which asperities carry all, {1e-6 * _FULL_ASPERITY_PRESSURE:g} MPa, are assumed. Below 90 "
-        "mm/s vibration is best at every stress, above it both together, unless the stress is low: as in D.",
-        draw=_method_map,
+    yield report_figure(
+        "figure-4-27-lubrication-regimes",
+        _method_map,
+        gain=100 * _SMALLEST_GAIN,
+        pressure=1e-6 * _FULL_ASPERITY_PRESSURE,
     )
 
 
@@ -157,15 +153,12 @@ _NAMES: Final = {"dry": "dry", "ultrasonic": "vibration", "lubricant": "Molykote
 
 def lubrication_method_figures() -> Iterator[ReportFigure]:
     """Figure of friction in time and over speed."""
-    yield ReportFigure(
-        name="figures-4-24-4-26-lubrication-methods",
-        title="Friction under three loads by four methods of lubrication",
-        caption="As D figures 4.24 to 4.26. None of their forces is printed. Friction ratios as in the map of methods "
-        f"below. Without vibration a coefficient of {dry_coefficient():.3g}, of the same pin on steel plates (D "
-        f"4.1.2), for that on M50 is not printed. {_DURATION:g} s of steadily rising speed, assumed. The plate's "
-        f"wobble moves the load by the scatter of Table 4.2, {100 * load_scatter():.1f} %, once a turn on 28 mm; in "
-        "the model friction fluctuates in its proportion, and so less where it is low. Bands: standard deviation.",
-        draw=_methods,
+    yield report_figure(
+        "figures-4-24-4-26-lubrication-methods",
+        _methods,
+        coefficient=dry_coefficient(),
+        duration=_DURATION,
+        scatter=100 * load_scatter(),
     )
 
 

@@ -19,7 +19,7 @@ from sonolube.facts.published import column_numbers, published_number, si_value
 from sonolube.figure import COLOURS, LINES, MARKERS, ReportFigure
 from sonolube.models.friction import EMPIRICAL_MEMORY_LENGTH
 from sonolube.reproduction.chapter4 import power_map
-from sonolube.reproduction.plots import draw_printed, single_axes
+from sonolube.reproduction.plots import draw_printed, report_figure, single_axes
 from sonolube.reproduction.published_rigs import IDENTIFIED_NOTE, plate_rig
 from sonolube.reproduction.row import Row, RowKind, default_model_row, published_formula_row, undetermined_row
 from sonolube.rig import load_study
@@ -78,41 +78,10 @@ def map_rows() -> Iterator[Row]:
 
 def map_figures() -> Iterator[ReportFigure]:
     """Figures of the maps."""
-    yield ReportFigure(
-        name="figure-4-9-stress-maps",
-        title="Friction reduction over sliding speed and stress",
-        caption="As D figures 4.9 and 4.10, by the multi-scale model on uncoated steel, at the five voltages of "
-        "Table 4.1. Contours are vertical: the stress has no effect, as in the text except at the arm's "
-        "resonance. For coated steel no parameter but hardness, thickness and roughness is printed.",
-        draw=lambda: draw_chart(map_chart(stress_maps())),
-    )
-    yield ReportFigure(
-        name="figure-4-20-power-maps",
-        title="Friction reduction over sliding speed and power",
-        caption="As D figures 4.11, 4.20 and the maps of appendix B on uncoated steel, by the multi-scale model, for "
-        "all seven loads. More power and less speed reduce friction more, as in the text; no ridge lies within the "
-        "powers of the tests.",
-        draw=lambda: draw_chart(map_chart(power_maps())),
-    )
-    yield ReportFigure(
-        name="figure-4-21-reduction-over-speed",
-        title="Model and test over sliding speed",
-        caption="As D figure 4.21. Solid: multi-scale model; curves of 3 and of 9 N coincide in print. "
-        "Dashed: D's efficiency line (D 4.4), which measured runs were fitted to. Points: Table 4.2, the one test "
-        "printed. D's own model met the tests at low speeds; its structure is not printed. With the structure "
-        "identified, the roughness of D 4.1.3 and nothing fitted to these tests, the model has the right size and "
-        "too shallow a slope, over the voltage and over the speed.",
-        draw=_reduction_over_speed,
-    )
-    yield ReportFigure(
-        name="figure-4-11-ridge",
-        title="Power beyond which friction falls no further",
-        caption="The model at 5 N, up to 200 V, far beyond the tests (dash-dotted: their highest power). Dashed: power "
-        "whose doubling reduces friction by less than another 5 %. Dotted: the power of zero friction on D's "
-        f"efficiency line (D 4.3), which has no meaning from {1e3 * power_map.line_end():.0f} mm/s on. Both rise with "
-        "the speed, as does the optimum at low speeds of the text; that of the model is about twice as high.",
-        draw=_ridge,
-    )
+    yield report_figure("figure-4-9-stress-maps", lambda: draw_chart(map_chart(stress_maps())))
+    yield report_figure("figure-4-20-power-maps", lambda: draw_chart(map_chart(power_maps())))
+    yield report_figure("figure-4-21-reduction-over-speed", _reduction_over_speed)
+    yield report_figure("figure-4-11-ridge", _ridge, speed=1e3 * power_map.line_end())
 
 
 @cache
@@ -258,14 +227,7 @@ def load_rows() -> Iterator[Row]:
 
 def load_figures() -> Iterator[ReportFigure]:
     """Figure of section 4.1.2 on load."""
-    yield ReportFigure(
-        name="figure-4-7-load",
-        title="Normal load, hung on the arm",
-        caption="The reduction does not depend on the load: force and its decay length keep their proportion. The "
-        "arm's natural frequency passes 100 Hz near 6.5 N, where the text has the largest reduction, but nothing "
-        "in the model excites the arm. Band: loads of the maximum in the text.",
-        draw=_load,
-    )
+    yield report_figure("figure-4-7-load", _load)
 
 
 def _load() -> "Figure":
@@ -277,16 +239,10 @@ def _load() -> "Figure":
 
 def coated_plate_figures() -> Iterator[ReportFigure]:
     """Figure of the maps on coated steel."""
-    yield ReportFigure(
-        name="figures-4-12-b-coated-power-maps",
-        title="Friction reduction over sliding speed and power on coated steel",
-        caption="As D figure 4.12 and the maps of appendix B on coated steel, by the multi-scale model, for all seven "
-        "loads. Of the coating only roughness, thickness and hardness are printed: the contact is that of the uncoated "
-        "plate with the roughness of the coating, 1.73 µm read as R_a. Its modulus is left out: in this contact it "
-        "changes the separation, not the reduction; the coating's own compliance would. The reduction is up to 1.2 "
-        "percentage points less than on uncoated steel; in D it is greater at low voltages, and at higher ones less at "
-        f"low speeds and greater at high ones. {IDENTIFIED_NOTE}.",
-        draw=lambda: draw_chart(map_chart(coated_power_maps())),
+    yield report_figure(
+        "figures-4-12-b-coated-power-maps",
+        lambda: draw_chart(map_chart(coated_power_maps())),
+        identified=IDENTIFIED_NOTE,
     )
 
 

@@ -22,7 +22,7 @@ from sonolube.facts.published import (
 from sonolube.figure import COLOURS, MARKERS, ReportFigure
 from sonolube.reproduction import formulas
 from sonolube.reproduction.chapter4 import power_map
-from sonolube.reproduction.plots import axes_row, draw_printed, line_style, single_axes
+from sonolube.reproduction.plots import axes_row, draw_printed, line_style, report_figure, single_axes
 from sonolube.reproduction.published_rigs import STEEL_ON_STEEL_NOTE
 from sonolube.reproduction.row import Row, formula_row, published_formula_row, published_model_row
 from sonolube.validation.contacts import STEEL_YIELD_STRENGTHS, efficiency_line
@@ -245,30 +245,10 @@ _OFFSET: Final = 3.0  # mm/s between points of one speed
 def power_figures() -> Iterator[ReportFigure]:
     """Figures of section 4.1 on power and efficiency."""
     sufficient = power_map.sufficient_power(power_map.example_test())
-    yield ReportFigure(
-        name="table-4-1-actuator-power",
-        title="Power of the actuator against voltage",
-        caption="All powers of Table 4.1 follow from D 1.9 with the whole swing as the highest voltage, a drive up "
-        "from zero; about zero the same swing would take half.",
-        draw=_power,
-    )
-    yield ReportFigure(
-        name="table-4-2-example-test",
-        title="Friction and its reduction in the example test",
-        caption="Table 4.2: 5 N, 65.5 mm/s, steel on steel. Squares: reductions of the printed mean forces, which "
-        "differ from those of D, whose averaging is not stated. The cube, with the roughness of the "
-        "plates, has neither speed nor in-plane motion: it falls too early. D's efficiency line, at the "
-        "power of D 1.9, follows the first three voltages and then takes all friction away.",
-        draw=_draw_example_test,
-    )
-    yield ReportFigure(
-        name="figure-4-13-efficiency",
-        title="Efficiency coefficient against sliding speed",
-        caption="D's line and the points of Table 4.2 at 65.5 mm/s, drawn side by side, with the scatter "
-        f"of the friction. On the line {sufficient:.1f} W take all friction away; what is "
-        "supplied beyond, at the two highest voltages, only lowers the coefficient. From "
-        f"{1e3 * power_map.line_end():.0f} mm/s on the line has no meaning and is refused.",
-        draw=_draw_efficiency,
+    yield report_figure("table-4-1-actuator-power", _power)
+    yield report_figure("table-4-2-example-test", _draw_example_test)
+    yield report_figure(
+        "figure-4-13-efficiency", _draw_efficiency, sufficient=sufficient, speed=1e3 * power_map.line_end()
     )
 
 

@@ -20,7 +20,7 @@ from sonolube.models.fem import generate_mesh, natural_modes
 from sonolube.models.friction import FaceVibrationMode, exponential_layer_ratio, linear_layer_ratio
 from sonolube.reproduction import formulas
 from sonolube.reproduction.chapter4.collar_rows import finite_elements_missing
-from sonolube.reproduction.plots import axes_row, line_style, single_axes
+from sonolube.reproduction.plots import axes_row, line_style, report_figure, single_axes
 from sonolube.reproduction.row import Row, default_model_row, formula_row, published_formula_row
 
 if TYPE_CHECKING:
@@ -66,13 +66,7 @@ def skin_replica_rows() -> Iterator[Row]:
 
 def skin_replica_figures() -> Iterator[ReportFigure]:
     """Figure of section 4.4."""
-    yield ReportFigure(
-        name="section-4-4-skin-replica",
-        title="Friction coefficient on the skin replica",
-        caption="Steel cutter head on a skin replica, 44.3 mm/s and 20 kHz. Filled: coefficients as section 4.4.3 "
-        "prints them. Rings: its forces over the loads of Table 4.6. Arrows: reductions of those forces.",
-        draw=_friction_coefficients,
-    )
+    yield report_figure("section-4-4-skin-replica", _friction_coefficients)
 
 
 @cache
@@ -200,29 +194,16 @@ _UNIFORM: Final = FaceVibrationMode(rim_displacement_ratio=1.0, following_fracti
 def cutter_head_figures() -> Iterator[ReportFigure]:
     """Figures of section 4.4; that of the mode only where the packages of the finite elements are there."""
     stiffening, linear = soft_layer_fits()
-    yield ReportFigure(
-        name="figures-4-42-4-46-skin-replica",
-        title="Friction on the skin replica over voltage and amplitude",
-        caption="As D figures 4.42 and 4.46. Neither voltages nor amplitudes are printed. Voltages are over that of "
-        "the tests under three loads, with the amplitude in proportion (D figure 4.45). The amplitude is over "
-        f"the decay length of the layer's pressure, {stiffening.value:.2g} in those tests, and over the indentation "
-        f"under {column_numbers('4.6', 'normal_load')[1].value:g} N for the linear layer, {linear.value:.2g}, each "
-        "fitted to the three printed ratios. Points: D 4.4.3. Right: with rim and centre in antiphase, as assumed, and "
-        "with a uniform motion, which a body behind so soft a layer follows: no reduction, as in failed attempts of "
-        "earlier studies (D 4.4.1).",
-        draw=_over_amplitude,
+    yield report_figure(
+        "figures-4-42-4-46-skin-replica",
+        _over_amplitude,
+        stiffening=stiffening.value,
+        load=column_numbers("4.6", "normal_load")[1].value,
+        linear=linear.value,
     )
     if finite_elements_missing():
         return
-    yield ReportFigure(
-        name="figure-4-44-cutter-head-mode",
-        title="Vibration mode of the cutter head",
-        caption="As D figure 4.44, by finite elements: displacement along the axis on the face of the disc, over its "
-        "largest. None of the sizes is printed; those taken are chosen for a mode at 20 kHz, and slots are left out. "
-        "Right: the same over the radius, with the mode that the models of the soft layer assume; that has no mean "
-        "over the face, this one has. Centre and rim move against each other, as the vibrometer showed.",
-        draw=_mode,
-    )
+    yield report_figure("figure-4-44-cutter-head-mode", _mode)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -16,7 +16,7 @@ from sonolube.models.contact import ExponentialHeights
 from sonolube.models.friction import sine_stick_slip_ratio
 from sonolube.models.thermal import superimposed_heat_rate
 from sonolube.reproduction.chapter4.power_map import actuator_power, vibration_amplitude
-from sonolube.reproduction.plots import axes_row, curve_style, line_style, point_style, single_axes
+from sonolube.reproduction.plots import axes_row, curve_style, line_style, point_style, report_figure, single_axes
 from sonolube.rig import thermal_solid
 from sonolube.validation.contacts import RMS_OVER_ARITHMETIC_MEAN
 
@@ -172,14 +172,8 @@ _CELSIUS: Final = ROOM_TEMPERATURE - 273.15
 def dry_temperature_figures() -> Iterator[ReportFigure]:
     """Figure of the temperature before the vibration."""
     last = si_value("4.1.3-friction-coated-last")
-    yield ReportFigure(
-        name="figure-4-31-temperature-over-speed",
-        title="Contact temperature over sliding speed",
-        caption="As D figure 4.31, of which no temperature is printed: computed at 12 s, after 10 s of sliding without "
-        f"vibration, with the least-squares lines (dashed). {ASSUMED}. Bands: coefficients of friction from "
-        f"{_MIN_COEFFICIENT:g} to {last:g}, those of D 4.1.3 with their misprint (E18). Nearly "
-        "linear, and steeper at the higher stress, as in the text.",
-        draw=_over_speed,
+    yield report_figure(
+        "figure-4-31-temperature-over-speed", _over_speed, assumed=ASSUMED, least=_MIN_COEFFICIENT, last=last
     )
 
 
@@ -210,31 +204,15 @@ _VOLTAGE: Final = "Drive voltage, peak to peak [V]"
 
 def temperature_figures() -> Iterator[ReportFigure]:
     """Figures of section 4.3."""
-    yield ReportFigure(
-        name="figure-4-30-contact-temperature",
-        title="Computed temperature of the contact in time",
-        caption=f"Tests of Table 4.4: sliding from 2 s, five voltages from 12 s on, rest from 32 s. {ASSUMED}; "
-        f"friction {100 * (1 - EXAMPLE_FRICTION_RATIO):.0f} % lower under vibration at every speed, which is "
-        f"printed for 220 mm/s only; {100 * vibration_heat_fraction():.2f} % of the actuator's power in the "
-        "contact. D measured up to 53 degC.",
-        draw=_temperature_over_time,
+    yield report_figure(
+        "figure-4-30-contact-temperature",
+        _temperature_over_time,
+        assumed=ASSUMED,
+        less=100 * (1 - EXAMPLE_FRICTION_RATIO),
+        fraction=100 * vibration_heat_fraction(),
     )
-    yield ReportFigure(
-        name="figure-4-34-two-factors",
-        title="Heat of the example with vibration over heat without",
-        caption="220 mm/s and 26 MPa; friction 10 % lower at every voltage, while in the text it falls further. "
-        "Friction times superimposed speed, the explanation of D, stays below one at every voltage of the tests. "
-        "With a fraction of the actuator's power, taken from these very statements, the contact cools and warms as "
-        "in D. Triangles point to the temperature in D: below or above that without vibration.",
-        draw=_heat_over_voltage,
-    )
-    yield ReportFigure(
-        name="figure-4-32-superimposed-speed",
-        title="Sliding speed with the vibration superimposed",
-        caption="Curves: the resultant of sliding speed and half-wave mean of the vibration velocity, the "
-        "amplitude in proportion to the voltage. Points: Table 4.5, with one misprinted cell, 110 for 112 mm/s.",
-        draw=_superimposed_speeds,
-    )
+    yield report_figure("figure-4-34-two-factors", _heat_over_voltage)
+    yield report_figure("figure-4-32-superimposed-speed", _superimposed_speeds)
 
 
 def _temperature_over_time() -> "Figure":

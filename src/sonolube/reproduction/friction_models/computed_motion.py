@@ -24,7 +24,7 @@ from sonolube.models.dynamics import ExponentialGap, contact_motion as motion_of
 from sonolube.models.friction import EMPIRICAL_MEMORY_LENGTH, FRICTION_MODELS
 from sonolube.reproduction.friction_models.mechanisms import mechanism_predictions
 from sonolube.reproduction.friction_models.variants import DEFAULT, Predictions, is_fitted_to, variant_predictions
-from sonolube.reproduction.plots import axes_row, draw_measured, point_style
+from sonolube.reproduction.plots import axes_row, draw_measured, point_style, report_figure
 from sonolube.reproduction.published_rigs import identified_structure
 from sonolube.reproduction.row import Row, default_model_row
 from sonolube.validation.assessment import FITTED_SETS, root_mean_square
@@ -107,14 +107,10 @@ def computed_motion_prediction(test: FrictionTest) -> Predictions:
 
 def computed_motion_figures() -> Iterator[ReportFigure]:
     """Figure of friction on computed motions."""
-    yield ReportFigure(
-        name="friction-models-on-computed-motion",
-        title="Friction on computed motions and on a prescribed sine",
-        caption="Left: measured ratios of Tables 2.3 (A) and 4.2 (B), and both friction models with nothing fitted on "
-        "the steady motion of the identified tribometer. Right: change of the ratio against that on a prescribed sine: "
-        + "; ".join(f"{name.replace('-', ' ')}, {motion}" for name, motion in MOTIONS.items())
-        + ".",
-        draw=_ratios_and_changes,
+    yield report_figure(
+        "friction-models-on-computed-motion",
+        _ratios_and_changes,
+        motions="; ".join(f"{name.replace('-', ' ')}, {motion}" for name, motion in MOTIONS.items()),
     )
 
 

@@ -25,6 +25,7 @@ from sonolube.figure import ReportFigure
 from sonolube.models.contact import decay_length, separation
 from sonolube.models.friction import mindlin_memory_length
 from sonolube.reproduction.friction_models.variants import Predictions, capitalised, parameters_text, ratio_text
+from sonolube.reproduction.plots import report_figure
 from sonolube.validation.assessment import (
     ErrorStatistics,
     Fit,
@@ -128,15 +129,10 @@ def mechanism_predictions(test: FrictionTest) -> Predictions:
 
 def mechanism_figures() -> Iterator[ReportFigure]:
     """Figure of the mechanisms."""
-    yield ReportFigure(
-        name="mechanisms-of-tables-2-3-and-4-2",
-        title="Mechanisms that could explain both Table 2.3 and Table 4.2",
-        caption="Points and scatter: measured. Lines: mechanisms fitted to both tables at once, with the number k of "
-        "fitted parameters and the corrected Akaike criterion, lower being better. With the "
-        f"memory length of Mindlin normal vibration has no effect above {1e3 * speeds_of_no_reduction().max():.0f} "
-        "mm/s in Table 4.2; with a fitted one its slope with the amplitude is too shallow. In-plane motion there "
-        "steepens it if it is at least half the normal one, a zero error of the string if it is half the friction.",
-        draw=lambda: draw_chart(_mechanisms_on_both_tables()),
+    yield report_figure(
+        "mechanisms-of-tables-2-3-and-4-2",
+        lambda: draw_chart(_mechanisms_on_both_tables()),
+        speed=1e3 * speeds_of_no_reduction().max(),
     )
 
 

@@ -11,7 +11,7 @@ from sonolube.checks import Floats
 from sonolube.figure import COLOURS, MARKERS, ReportFigure, subplots
 from sonolube.models import friction
 from sonolube.models.contact import load_balanced_motion, sinusoidal_motion
-from sonolube.reproduction.plots import draw_measured, line_style, single_axes
+from sonolube.reproduction.plots import draw_measured, line_style, report_figure, single_axes
 from sonolube.validation.assessment import (
     FITTED_SETS,
     SETS_WITHOUT_POWER_MAP,
@@ -97,33 +97,14 @@ _LARGEST_ERROR: Final = 0.5  # limit of the colour scale
 
 def variant_figures() -> Iterator[ReportFigure]:
     """Figures of the variants of the friction models."""
-    yield ReportFigure(
-        name="friction-models-against-speed",
-        title="Friction ratio against sliding speed, by friction model",
-        caption="Points and scatter: Table 2.3 (3 N, 2.5 um, 22 kHz). Lines: each friction model for these "
-        "settings and the contact of Table 3.2; only those marked as fitted have a fitted value. The ratio grows "
-        "with speed in all but the cube over the half period; over the full period it soon exceeds 1.",
-        draw=_against_speed,
+    yield report_figure("friction-models-against-speed", _against_speed)
+    yield report_figure(
+        "friction-models-predicted-against-measured",
+        _predicted_against_measured,
+        sets="; ".join(f"{letter}: {content}" for letter, content in NORMAL_VIBRATION_SETS.items()),
+        highest=_HIGHEST,
     )
-    yield ReportFigure(
-        name="friction-models-predicted-against-measured",
-        title="Predicted against measured friction ratio, by friction model",
-        caption="; ".join(f"{letter}: {content}" for letter, content in NORMAL_VIBRATION_SETS.items())
-        + ". Grey band: within 0.1 of the measured ratio. Open triangles at the edge: predicted above "
-        f"{_HIGHEST:g}; tests outside the range of a model are not drawn. The error is that over sets A and C to "
-        "G; to set B only variants with a parameter of its rig are fitted, and of set H the amplitude is uncertain.",
-        draw=_predicted_against_measured,
-    )
-    yield ReportFigure(
-        name="friction-models-errors-by-test",
-        title="Error of every friction model in every test",
-        caption="Cells: predicted minus measured friction ratio in hundredths, the measured ratio above its "
-        "column; empty outside the range of a model. All variants are fitted to all seven sets. Right: number of "
-        "fitted parameters k, rms error, median of the relative error, the same of the leave-one-set-out "
-        "cross-validation (CV), and the corrected Akaike (AICc) and Bayesian (BIC) information criteria, lower "
-        f"being better, where every test is in range. {_default_model_text()}",
-        draw=_errors_by_test,
-    )
+    yield report_figure("friction-models-errors-by-test", _errors_by_test, default=_default_model_text())
 
 
 def _default_model_text() -> str:
