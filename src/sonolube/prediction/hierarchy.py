@@ -219,7 +219,6 @@ def squared_distances(one: Conditions, other: Conditions) -> Floats:
     )
 
 
-@dataclass(frozen=True, slots=True)
 class RigLikelihood:
     """Likelihood of the tests of one rig under one friction model, marginalised over the parameters of the rig.
 
@@ -227,23 +226,13 @@ class RigLikelihood:
     ----------
     closure : Closure
     rig : TestedRig
-    deviates : ndarray, shape (j, 3)
-        Standard normal deviates, over which is averaged.
-    table : ndarray, shape (p, q, n)
-        Friction ratio of each test over logarithms of theta and of the factor on l/a.
     """
 
-    closure: Closure
-    rig: TestedRig
-    deviates: Floats
-    table: Floats
-
-    @classmethod
-    def of(cls, closure: Closure, rig: TestedRig) -> "RigLikelihood":
-        """Likelihood with the friction ratios tabulated."""
+    def __init__(self, closure: Closure, rig: TestedRig) -> None:
+        self.closure, self.rig = closure, rig
         at = rig.at.conditions.scaled(decay_length=np.exp(_LENGTHS)[:, None])
-        table = closure.ratio(np.log(closure.median) + _PARAMETERS[:, None, None], at)
-        return cls(closure, rig, standard_normals(_NODES, columns=OWN_DEVIATES, seed=1), table)
+        self.table = closure.ratio(np.log(closure.median) + _PARAMETERS[:, None, None], at)
+        self.deviates = standard_normals(_NODES, columns=OWN_DEVIATES, seed=1)
 
     def __call__(self, hyperparameters: Floats) -> Floats:
         """Logarithm of the likelihood of each row of hyperparameters.

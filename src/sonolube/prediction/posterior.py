@@ -153,7 +153,7 @@ class Population:
         """Population of some rigs under a prior."""
         means, deviations = prior.of(closure)
         draws = means + deviations * standard_normals(PRIOR_DRAWS, columns=len(HYPERPARAMETERS), seed=2)
-        logs = np.column_stack([RigLikelihood.of(closure, rig)(draws) for rig in rigs])
+        logs = np.column_stack([RigLikelihood(closure, rig)(draws) for rig in rigs])
         return cls(closure=closure, draws=draws, log_likelihoods=logs)
 
     def posterior(self, *, without: tuple[int, ...] = ()) -> Posterior:

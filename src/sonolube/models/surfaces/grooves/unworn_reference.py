@@ -5,7 +5,6 @@ Waviness of many waves is a Gaussian random field, its spectrum estimated by emp
 
 import math
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotri
@@ -44,7 +43,7 @@ def fit_random_field(blocks: BlockAverages) -> WavinessModel:
     count, free = len(modes), 3 + blocks.section.shape[1]
     form = blocks.form(6)
     design = np.concatenate([form[:, :3], blocks.section, form[:, 3:], *blocks.fourier_waves], axis=1)
-    parts = [_Part.of(blocks, design, part) for part in blocks.parts]
+    parts = [_Part(blocks, design, part) for part in blocks.parts]
     wavenumber = np.hypot(*modes.T)
     ring = np.minimum((wavenumber / wavenumber.max() * _RINGS).astype(np.intp), _RINGS - 1)
     rings = np.concatenate([np.full(3, _RINGS), ring, ring])  # the square terms of the form are free
@@ -90,20 +89,14 @@ def fit_random_field(blocks: BlockAverages) -> WavinessModel:
     )
 
 
-class _Part(NamedTuple):
+class _Part:
     """Normal equations of the unworn or the worn blocks for unit noise."""
 
-    gram: Floats
-    moment: Floats
-    square: float
-    blocks: int
-
-    @classmethod
-    def of(cls, blocks: BlockAverages, design: Floats, part: slice) -> "_Part":
-        """Normal equations of a slice of the blocks."""
+    def __init__(self, blocks: BlockAverages, design: Floats, part: slice) -> None:
         weighted = blocks.weight[part, None] * design[part]
         z = blocks.mean_height[part]
-        return cls(design[part].T @ weighted, weighted.T @ z, float(blocks.weight[part] @ z**2), z.size)
+        self.gram, self.moment = design[part].T @ weighted, weighted.T @ z
+        self.square, self.blocks = float(blocks.weight[part] @ z**2), z.size
 
     def residual_sum(self, mean: Floats) -> float:
         """Weighted residual sum of squares for given coefficients."""
