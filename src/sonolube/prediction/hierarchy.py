@@ -154,11 +154,10 @@ def log_hyperprior(closure: Closure, hyperparameters: Floats, prior: Prior = POP
     return np.asarray(-0.5 * np.sum(((hyperparameters - means) / deviations) ** 2, axis=-1))
 
 
-@dataclass(frozen=True, slots=True, eq=False)
 class OwnParameters:
-    """Parameters of one rig, for rows of hyperparameters and deviates.
+    """Parameters of one rig, from hyperparameters, shape (..., 6), and standard normal deviates, shape (..., 3).
 
-    Parameters
+    Attributes
     ----------
     log_parameter : ndarray, shape (...)
         Of the friction model.
@@ -168,23 +167,11 @@ class OwnParameters:
         Of the standard deviation of the discrepancy, s_r sigma.
     """
 
-    log_parameter: Floats
-    log_factor: Floats
-    log_discrepancy: Floats
-
-
-def own_parameters(hyperparameters: Floats, deviates: Floats, at: UncertainConditions) -> OwnParameters:
-    """Parameters of one rig from hyperparameters and standard normal deviates.
-
-    `hyperparameters` has shape (..., 6). `deviates` has shape (..., 3).
-    """
-    mu, kappa, tau, tau_l, sigma, _ = np.moveaxis(hyperparameters, -1, 0)
-    factor = at.log_length_factor(length_factor=kappa, length_spread=tau_l, deviates=deviates[..., 1])
-    return OwnParameters(
-        log_parameter=np.asarray(mu + np.exp(tau) * deviates[..., 0]),
-        log_factor=factor,
-        log_discrepancy=np.asarray(sigma + log_discrepancy_scale(deviates[..., 2])),
-    )
+    def __init__(self, hyperparameters: Floats, deviates: Floats, at: UncertainConditions) -> None:
+        mu, kappa, tau, tau_l, sigma, _ = np.moveaxis(hyperparameters, -1, 0)
+        self.log_parameter = np.asarray(mu + np.exp(tau) * deviates[..., 0])
+        self.log_factor = at.log_length_factor(length_factor=kappa, length_spread=tau_l, deviates=deviates[..., 1])
+        self.log_discrepancy = np.asarray(sigma + log_discrepancy_scale(deviates[..., 2]))
 
 
 def log_discrepancy_scale(deviates: Floats) -> Floats:
@@ -252,7 +239,7 @@ class RigLikelihood:
     def _batch(self, hyperparameters: Floats) -> Floats:
         """Logarithm of the likelihood of not too many rows."""
         at = self.rig.at
-        own = own_parameters(hyperparameters[:, None], self.deviates, at)
+        own = OwnParameters(hyperparameters[:, None], self.deviates, at)
         ratio = self._ratios(own)
         residual = self.rig.friction_ratio - ratio
         covariance = covariance_of_tests(

@@ -41,7 +41,6 @@ from sonolube.prediction.hierarchy import (
     discrepancy_correlation,
     discrepancy_deviation,
     log_normal_density,
-    own_parameters,
     standard_normals,
 )
 from sonolube.prediction.wear import WEAR_HYPERPARAMETERS, WearPosterior, published_wear
@@ -228,7 +227,7 @@ class RigDraws:
     @property
     def parameters(self) -> OwnParameters:
         """Parameters of each draw."""
-        return own_parameters(self.hyperparameters, self.deviates, self.at)
+        return OwnParameters(self.hyperparameters, self.deviates, self.at)
 
     def means(self, conditions: Conditions) -> Floats:
         """Friction ratios of the friction model without discrepancy, shape (p, m). []"""

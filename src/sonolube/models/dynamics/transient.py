@@ -92,7 +92,7 @@ def march(
     Notes
     -----
     Without contact force the steps are exact, whatever their length, under any waveform and a linear ramp. The contact
-    force is integrated to fifth order (`exponential_integrator`) where it is smooth: under the exponential law, before
+    force is integrated to fifth order (`ExponentialIntegrator`) where it is smooth: under the exponential law, before
     and after a jump of the voltage or the end of a ramp, at which the integration restarts. Where contact of spheres or
     springs is lost, or damping would make the force tensile, the force has a corner and the order falls to two;
     `advice` names this. An amplitude of fourteen micrometres over a decay length of two takes 12 steps per period for
