@@ -344,6 +344,4 @@ def _rig_with_others(name: str) -> tuple[TestedRig, Posterior]:
 
 def _along(at: Conditions, condition: str, values: Floats) -> Conditions:
     """First of some conditions, with one of its quantities varied."""
-    names = ("vibration_amplitude", "frequency", "sliding_speed", "decay_length")
-    fixed = {each: np.full(values.size, getattr(at, each)[0]) for each in names}
-    return Conditions(**fixed | {condition: values})
+    return replace(at.taken(np.zeros(values.size, dtype=np.int64)), **{condition: values})

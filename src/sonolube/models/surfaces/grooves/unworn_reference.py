@@ -70,7 +70,8 @@ def fit_random_field(blocks: BlockAverages) -> WavinessModel:
         if np.all(np.abs(np.log(density / previous))[previous > _NEGLIGIBLE_VARIANCE * noise[0]] < _CONVERGED):
             break
     misfit = sum(part.residual_sum(mean) / variance for part, variance in zip(parts, used_noise, strict=True))
-    cost = _log_noise(parts, used_noise) + misfit + float(mean[free:] ** 2 @ prior - np.sum(np.log(prior)))
+    noises = sum(part.blocks * math.log(variance) for part, variance in zip(parts, used_noise, strict=True))
+    cost = float(noises) + misfit + float(mean[free:] ** 2 @ prior - np.sum(np.log(prior)))
     cost += float(np.linalg.slogdet(precision)[1] - np.linalg.slogdet(precision[:free, :free])[1])
     kept = np.concatenate([np.arange(3), bound])
     response = covariance @ (design * (blocks.weight / blocks.per_part(used_noise))[:, None]).T
@@ -117,11 +118,6 @@ def _inverse(precision: Floats) -> Floats:
     inverse = lower + lower.T  # the upper part of either factor is zero
     np.fill_diagonal(inverse, np.diag(lower))
     return np.asarray(inverse)
-
-
-def _log_noise(parts: list[_Part], noise: Floats) -> float:
-    """Sum of the logarithms of the noise variances over all blocks."""
-    return float(sum(part.blocks * math.log(variance) for part, variance in zip(parts, noise, strict=True)))
 
 
 _FORM_TERMS = 6  # a curvature that roughness hides is still there below the groove
