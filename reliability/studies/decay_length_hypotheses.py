@@ -105,7 +105,7 @@ STUDY = Study(
     "turn (long sliding, a zero error of the load cell, detuning), under none, under two at once, with a change of 15 "
     "to 30 %, and with friction that changes by itself: the analysis names the right one, and decides nothing where it "
     "must not. One run in four is a recording, the others are tables of their switches.",
-    sources=("identification/decay_length/*.py",),
+    sources=("identification/decay_length/*.py", "identification/decay_length/*.toml"),
     trials=700,
     sample=3,
     trial=_trial,

@@ -14,8 +14,8 @@ from sonolube.prediction.hierarchy import (
     HYPERPARAMETERS,
     OWN_DEVIATES,
     POPULATION_PRIOR,
+    OwnParameters,
     covariance_of_tests,
-    own_parameters,
 )
 from sonolube.prediction.posterior import Population
 from sonolube.prediction.predictive import ratio_draws
@@ -47,7 +47,7 @@ def _trial(seed: int) -> Record:
 
 def _generated(closure: Closure, rig: TestedRig, hyperparameters: Floats, rng: np.random.Generator) -> TestedRig:
     """Rig of the same conditions with friction ratios drawn from the model."""
-    own = own_parameters(hyperparameters, rng.standard_normal(OWN_DEVIATES), rig.at)
+    own = OwnParameters(hyperparameters, rng.standard_normal(OWN_DEVIATES), rig.at)
     at = rig.at.conditions.scaled(decay_length=np.exp(own.log_factor))
     ratio = closure.ratio(own.log_parameter, at)
     exact = replace(rig, uncertainty=np.full(ratio.size, 1e-6))

@@ -95,7 +95,7 @@ STUDY = Study(
     question="Friction of 200 virtual specimens at the three speeds of Study I, recorded and analysed, beside D"
     " Table 2.3. The rig file has one coefficient of friction, that of the lowest speed, and the population was learned"
     " from these tests too; the last row is without them.",
-    sources=("laboratory/virtual_tribometer/*.py", "prediction/*.py", "prediction/learned.json"),
+    sources=("laboratory/virtual_tribometer/*.py", "prediction/*.py", "prediction/*.toml", "prediction/learned.json"),
     trials=200,
     sample=2,
     trial=_trial,

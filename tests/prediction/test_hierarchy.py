@@ -20,7 +20,7 @@ from sonolube.rig.friction_and_wear import PUBLISHED_DECAY_LENGTH
 def test_of_a_linear_closure_the_likelihood_is_that_of_a_normal_discrepancy_with_students_scale() -> None:
     rig = measured_rig([0.3, 0.42, 0.5], conditions([1e-6, 2e-6, 2e-6], [0.02, 0.02, 0.06]))
     mu, tau, sigma, length = 0.38, 0.06, 0.1, 0.8
-    found = RigLikelihood.of(LINEAR, rig)(np.array([[mu, 0.0, np.log(tau), 0.0, np.log(sigma), np.log(length)]]))
+    found = RigLikelihood(LINEAR, rig)(np.array([[mu, 0.0, np.log(tau), 0.0, np.log(sigma), np.log(length)]]))
     distances = squared_distances(rig.at.conditions, rig.at.conditions)
 
     def density(chi_squared: float) -> float:

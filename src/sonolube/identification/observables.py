@@ -1,8 +1,11 @@
 """Observables of a structure by name, and forward models: which was observed under which conditions, for each fact."""
 
+import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from importlib.resources import files
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
@@ -35,106 +38,59 @@ class Observable:
     evaluate: Callable[[SmallVibration], Floats]
 
 
-_LOADED = ("normal_load", "decay_length")
+_EVALUATIONS: Mapping[str, Callable[[SmallVibration], Floats]] = {
+    "electrical_resonance": lambda vibration: vibration.resonance,
+    "electrical_antiresonance": lambda vibration: vibration.antiresonance,
+    "effective_coupling_factor": lambda vibration: np.sqrt(1 - (vibration.resonance / vibration.antiresonance) ** 2),
+    "resonance_quality_factor": lambda vibration: quality_factor_of(vibration.resonance_pole),
+    "resonance_settling_time": lambda vibration: settling_time_of(vibration.resonance_pole),
+    "amplitude_per_volt": lambda vibration: vibration.contact_amplitude(vibration.driven_motion) / 2,
+    "resonance_amplitude_ratio": lambda vibration: (
+        vibration.contact_amplitude(vibration.driven_motion)
+        / vibration.contact_amplitude(vibration.motion_per_volt(vibration.resonance))
+    ),
+    "dissipated_power": lambda vibration: _dissipated_power(vibration),
+    "static_displacement_per_volt": lambda vibration: vibration.static_displacement_per_volt(),
+    "residual_frequency": lambda vibration: np.abs(vibration.residual_pole) / (2 * np.pi),
+    "residual_settling_time": lambda vibration: vibration.residual_settling_time,
+    "residual_fraction": lambda vibration: np.exp(
+        vibration.residual_pole.real * vibration.conditions.value("observation_time")
+    ),
+}
+_NUMBERED_EVALUATIONS: Mapping[str, Callable[[SmallVibration, int], Floats]] = {
+    "natural_frequency": lambda vibration, number: vibration.natural_frequency(number),
+    "loaded_natural_frequency": lambda vibration, number: vibration.natural_frequency(number, loaded=True),
+    "quality_factor": lambda vibration, number: vibration.quality_factor(number),
+}
+_ENTRIES: Mapping[str, Any] = tomllib.loads(
+    files("sonolube.identification").joinpath("observables.toml").read_text(encoding="utf-8")
+)
+
+
+def _observable_of(name: str, evaluate: Callable[[SmallVibration], Floats], *, number: int = 1) -> Observable:
+    """Observable as the table of observables states it."""
+    entry = _ENTRIES[name]
+    return Observable(
+        unit=entry["unit"],
+        meaning=entry["meaning"].format(number=number),
+        requires=tuple(entry.get("requires", ())),
+        evaluate=evaluate,
+    )
+
+
+def _numbered(name: str) -> Callable[[int], Observable]:
+    """Observables of one mode by its number."""
+    evaluate = _NUMBERED_EVALUATIONS[name]
+    return lambda number: _observable_of(name, lambda vibration: evaluate(vibration, number), number=number)
+
 
 OBSERVABLES: Mapping[str, Observable] = MappingProxyType(
-    {
-        "electrical_resonance": Observable(
-            unit="Hz",
-            meaning="Natural frequency, drive short-circuited, of the mode that draws the most current: peak of the"
-            " conductance",
-            evaluate=lambda vibration: vibration.resonance,
-        ),
-        "electrical_antiresonance": Observable(
-            unit="Hz",
-            meaning="Natural frequency of the same mode with the drive open: peak of the resistance",
-            evaluate=lambda vibration: vibration.antiresonance,
-        ),
-        "effective_coupling_factor": Observable(
-            unit="",
-            meaning="Effective coupling factor of the same mode, k^2 = 1 - (resonance/antiresonance)^2",
-            evaluate=lambda vibration: np.sqrt(1 - (vibration.resonance / vibration.antiresonance) ** 2),
-        ),
-        "resonance_quality_factor": Observable(
-            unit="",
-            meaning="Quality factor of the same mode, contact free",
-            evaluate=lambda vibration: quality_factor_of(vibration.resonance_pole),
-        ),
-        "resonance_settling_time": Observable(
-            unit="s",
-            meaning="Time in which the transient of the same mode decays to 2 %, contact free",
-            evaluate=lambda vibration: settling_time_of(vibration.resonance_pole),
-        ),
-        "amplitude_per_volt": Observable(
-            unit="m/V",
-            meaning="Amplitude of the contact per volt peak to peak at the drive frequency, contact free",
-            requires=("frequency",),
-            evaluate=lambda vibration: vibration.contact_amplitude(vibration.driven_motion) / 2,
-        ),
-        "resonance_amplitude_ratio": Observable(
-            unit="",
-            meaning="Amplitude of the contact at the drive frequency over that at the electrical resonance",
-            requires=("frequency",),
-            evaluate=lambda vibration: (
-                vibration.contact_amplitude(vibration.driven_motion)
-                / vibration.contact_amplitude(vibration.motion_per_volt(vibration.resonance))
-            ),
-        ),
-        "dissipated_power": Observable(
-            unit="W",
-            meaning="Real electrical power at the drive voltage and frequency, contact free",
-            requires=("frequency", "voltage_peak_to_peak"),
-            evaluate=lambda vibration: _dissipated_power(vibration),
-        ),
-        "static_displacement_per_volt": Observable(
-            unit="m/V",
-            meaning="Displacement of the contact per volt of constant voltage, contact free",
-            evaluate=lambda vibration: vibration.static_displacement_per_volt(),
-        ),
-        "residual_frequency": Observable(
-            unit="Hz",
-            meaning="Lowest frequency of free vibration on the loaded contact: that of the residual (beat) oscillation",
-            requires=_LOADED,
-            evaluate=lambda vibration: np.abs(vibration.residual_pole) / (2 * np.pi),
-        ),
-        "residual_settling_time": Observable(
-            unit="s",
-            meaning="Time in which the slowest transient on the loaded contact, but that of the driven mode, decays to"
-            " 2 %",
-            requires=_LOADED,
-            evaluate=lambda vibration: vibration.residual_settling_time,
-        ),
-        "residual_fraction": Observable(
-            unit="",
-            meaning="Amplitude of the residual oscillation after the observation time, over the initial one",
-            requires=(*_LOADED, "observation_time"),
-            evaluate=lambda vibration: np.exp(
-                vibration.residual_pole.real * vibration.conditions.value("observation_time")
-            ),
-        ),
-    }
+    {name: _observable_of(name, evaluate) for name, evaluate in _EVALUATIONS.items()}
 )
 """Observables of a structure by name."""
 
 NUMBERED_OBSERVABLES: Mapping[str, Callable[[int], Observable]] = MappingProxyType(
-    {
-        "natural_frequency": lambda number: Observable(
-            unit="Hz",
-            meaning=f"Natural frequency {number}, contact free, drive short-circuited, rigid modes not counted",
-            evaluate=lambda vibration: vibration.natural_frequency(number),
-        ),
-        "loaded_natural_frequency": lambda number: Observable(
-            unit="Hz",
-            meaning=f"Natural frequency {number} on the loaded contact, drive short-circuited, rigid modes not counted",
-            requires=_LOADED,
-            evaluate=lambda vibration: vibration.natural_frequency(number, loaded=True),
-        ),
-        "quality_factor": lambda number: Observable(
-            unit="",
-            meaning=f"Quality factor of natural frequency {number}, contact free",
-            evaluate=lambda vibration: vibration.quality_factor(number),
-        ),
-    }
+    {name: _numbered(name) for name in _NUMBERED_EVALUATIONS}
 )
 """Observables of one mode, by the name that its number follows: "natural_frequency_2" is that of the second mode."""
 

@@ -89,17 +89,6 @@ def _body(name: str, *, strength: str | float | None = None, is_measured: bool =
     )
 
 
-_STEEL: Final = ("stainless_steel", "steel")
-_FAMILIES: Final = {
-    "stainless steel on aluminium": (_STEEL, ("aluminium",)),
-    "stainless steel on stainless steel": (_STEEL, _STEEL),
-    "ceramic on M50 tool steel": (("ceramic",), ("steel",)),
-    "M50 tool steel on M50 tool steel": (("m50",), ("m50",)),
-    "stainless steel on titanium": (_STEEL, ("titanium",)),
-    "titanium on titanium": (("titanium",), ("titanium",)),
-}
-"""Materials or families on each side of a published pair; any steel stands for any other."""
-
 _NEAR_TIE: Final = 1.25  # ratio of hardnesses below which temper and hardening by work decide
 _LARGE: Final = 0.1  # change of the wear rate that counts as one
 _SMALL: Final = 0.02  # and one that counts as none
@@ -131,7 +120,7 @@ def pair_of(rig: Rig) -> str | None:
     bodies = named_bodies(rig)
     if len(bodies) < 2:
         return None
-    matches = {name: _specificity(sides, *bodies) for name, sides in _FAMILIES.items()}
+    matches = {pair.name: _specificity(pair.sides, *bodies) for pair in published_wear()}
     best = max(matches, key=lambda name: matches[name])
     return best if matches[best] else None
 

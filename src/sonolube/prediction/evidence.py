@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, Integers
-from sonolube.models.contact import RoughContact, decay_length, separation
+from sonolube.models.contact import decay_length, separation
 from sonolube.models.friction import tabulated_spring_ratio, tabulated_stick_slip_ratio
 from sonolube.rig import ResolvedRig
 from sonolube.rig.amplitude_source import AMPLITUDE_ERROR
@@ -224,16 +224,11 @@ def _logs(at: Conditions) -> Floats:
 @cache
 def rigs_by_records() -> tuple[TestedRig, ...]:
     """Sets A to H with the decay length R_q/lambda of their records as reference, which no user has before a test."""
-    lengths: dict[str, list[float]] = {}
-    for test in friction_tests():
-        at_rest = separation(test.contact, normal_load=test.normal_load)
-        lengths.setdefault(test.set_name, []).append(float(decay_length(test.contact, separation=at_rest)))
-    return tuple(
-        replace(
-            rig, at=replace(rig.at, conditions=replace(rig.at.conditions, decay_length=np.array(lengths[rig.name])))
-        )
-        for rig in published_rigs()
-    )
+    found = []
+    for rig in published_rigs():
+        lengths = np.array([_decay_length(test) for test in friction_tests() if test.set_name == rig.name])
+        found.append(replace(rig, at=replace(rig.at, conditions=replace(rig.at.conditions, decay_length=lengths))))
+    return tuple(found)
 
 
 def _rig(name: str, tests: tuple[FrictionTest, ...]) -> TestedRig:
@@ -261,7 +256,7 @@ _MARGIN = 1.05  # of the largest tested one
 @cache
 def amplitude_ratios_of_tests() -> tuple[float, float]:
     """Smallest and the largest amplitude of the published tests over the decay length. []"""
-    ratios = [_amplitude_ratio(one.contact, one.normal_load, one.vibration_amplitude) for one in friction_tests()]
+    ratios = [test.vibration_amplitude / _decay_length(test) for test in friction_tests()]
     return float(np.min(ratios)), float(np.max(ratios))
 
 
@@ -280,7 +275,7 @@ def large_amplitude_caveats(resolved: ResolvedRig, *, vibration_amplitude: float
     )
 
 
-def _amplitude_ratio(contact: RoughContact, normal_load: float, amplitude: float) -> float:
-    """Amplitude over the decay length of a contact under its load. []"""
-    at_rest = separation(contact, normal_load=normal_load)
-    return amplitude / float(decay_length(contact, separation=at_rest))
+def _decay_length(test: FrictionTest) -> float:
+    """Decay length of the contact of a test under its load, in m."""
+    at_rest = separation(test.contact, normal_load=test.normal_load)
+    return float(decay_length(test.contact, separation=at_rest))

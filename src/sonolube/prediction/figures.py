@@ -10,7 +10,7 @@ import numpy as np
 from sonolube.charts import Axis, Band, Chart, Line, Panel, Part, Points, Rule, draw_chart
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, MARKERS, ReportFigure, subplots
-from sonolube.prediction.calibration import blind_calibration, calibrations, mean_ratio_calibration
+from sonolube.prediction.calibration import Calibration, blind_calibration, calibrations, mean_ratio_calibration
 from sonolube.prediction.evidence import Conditions, TestedRig, published_rigs
 from sonolube.prediction.hierarchy import LEVELS, PROBABILITIES, central_interval
 from sonolube.prediction.posterior import Posterior, published_population
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from sonolube.prediction.calibration import Calibration
     from sonolube.rig.datasets import LabelledArrays
 
 _OPACITIES: Final = (0.15, 0.25, 0.4)  # of the bands, the widest first
@@ -144,7 +143,7 @@ def _own_runs(
     return tuple(found)
 
 
-def calibration_figure(calibrations: "tuple[Calibration, ...]") -> "Figure":
+def calibration_figure(calibrations: tuple[Calibration, ...]) -> "Figure":
     """Draw coverage against probability with its binomial interval, and the scores of each way to predict.
 
     Parameters
@@ -344,6 +343,4 @@ def _rig_with_others(name: str) -> tuple[TestedRig, Posterior]:
 
 def _along(at: Conditions, condition: str, values: Floats) -> Conditions:
     """First of some conditions, with one of its quantities varied."""
-    names = ("vibration_amplitude", "frequency", "sliding_speed", "decay_length")
-    fixed = {each: np.full(values.size, getattr(at, each)[0]) for each in names}
-    return Conditions(**fixed | {condition: values})
+    return replace(at.taken(np.zeros(values.size, dtype=np.int64)), **{condition: values})

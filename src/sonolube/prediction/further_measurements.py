@@ -109,17 +109,12 @@ def stiffness_probes(
         [modes(with_contact_spring(structure, normal_stiffness=float(k))) for k in stiffness * factor]
         for factor in (1.0, np.exp(_STEP), np.exp(-_STEP))
     )
+    frequency, above, below = (np.array([one.natural_frequency for one in each]).T for each in (at, upper, lower))
+    damping_ratio = np.array([one.damping_ratio for one in at]).T
     found = []
     participation = np.abs(structure.contact_vector @ free.shapes)
     for mode in np.flatnonzero(participation > 1e-6 * participation.max()):
-        pressed = np.array([one.natural_frequency[mode] for one in at])
-        damping = np.array([one.damping_ratio[mode] for one in at])
-        rise = np.array(
-            [
-                above.natural_frequency[mode] - below.natural_frequency[mode]
-                for above, below in zip(upper, lower, strict=True)
-            ]
-        )
+        pressed, damping, rise = frequency[mode], damping_ratio[mode], above[mode] - below[mode]
         f_0 = float(free.natural_frequency[mode])
         shift_uncertainty = r * np.hypot(damping * pressed, float(free.damping_ratio[mode]) * f_0)
         resolvable = (pressed - f_0 >= _RESOLVED * shift_uncertainty) & (damping < _WIDEST) & (rise > 0)

@@ -163,11 +163,10 @@ def log_hyperprior(closure: Closure, hyperparameters: Floats, prior: Prior = POP
     return np.asarray(-0.5 * np.sum(((hyperparameters - means) / deviations) ** 2, axis=-1))
 
 
-@dataclass(frozen=True, slots=True, eq=False)
 class OwnParameters:
-    """Parameters of one rig, for rows of hyperparameters and deviates.
+    """Parameters of one rig, from hyperparameters, shape (..., 6), and standard normal deviates, shape (..., 3).
 
-    Parameters
+    Attributes
     ----------
     log_parameter : ndarray, shape (...)
         Of the friction model.
@@ -177,23 +176,11 @@ class OwnParameters:
         Of the standard deviation of the discrepancy, s_r sigma.
     """
 
-    log_parameter: Floats
-    log_factor: Floats
-    log_discrepancy: Floats
-
-
-def own_parameters(hyperparameters: Floats, deviates: Floats, at: UncertainConditions) -> OwnParameters:
-    """Parameters of one rig from hyperparameters and standard normal deviates.
-
-    `hyperparameters` has shape (..., 6). `deviates` has shape (..., 3).
-    """
-    mu, kappa, tau, tau_l, sigma, _ = np.moveaxis(hyperparameters, -1, 0)
-    factor = at.log_length_factor(length_factor=kappa, length_spread=tau_l, deviates=deviates[..., 1])
-    return OwnParameters(
-        log_parameter=np.asarray(mu + np.exp(tau) * deviates[..., 0]),
-        log_factor=factor,
-        log_discrepancy=np.asarray(sigma + log_discrepancy_scale(deviates[..., 2])),
-    )
+    def __init__(self, hyperparameters: Floats, deviates: Floats, at: UncertainConditions) -> None:
+        mu, kappa, tau, tau_l, sigma, _ = np.moveaxis(hyperparameters, -1, 0)
+        self.log_parameter = np.asarray(mu + np.exp(tau) * deviates[..., 0])
+        self.log_factor = at.log_length_factor(length_factor=kappa, length_spread=tau_l, deviates=deviates[..., 1])
+        self.log_discrepancy = np.asarray(sigma + log_discrepancy_scale(deviates[..., 2]))
 
 
 def log_discrepancy_scale(deviates: Floats) -> Floats:
@@ -228,7 +215,6 @@ def squared_distances(one: Conditions, other: Conditions) -> Floats:
     )
 
 
-@dataclass(frozen=True, slots=True)
 class RigLikelihood:
     """Likelihood of the tests of one rig under one friction model, marginalised over the parameters of the rig.
 
@@ -236,23 +222,13 @@ class RigLikelihood:
     ----------
     closure : Closure
     rig : TestedRig
-    deviates : ndarray, shape (j, 3)
-        Standard normal deviates, over which is averaged.
-    table : ndarray, shape (p, q, n)
-        Friction ratio of each test over logarithms of theta and of the factor on l/a.
     """
 
-    closure: Closure
-    rig: TestedRig
-    deviates: Floats
-    table: Floats
-
-    @classmethod
-    def of(cls, closure: Closure, rig: TestedRig) -> "RigLikelihood":
-        """Likelihood with the friction ratios tabulated."""
+    def __init__(self, closure: Closure, rig: TestedRig) -> None:
+        self.closure, self.rig = closure, rig
         at = rig.at.conditions.scaled(decay_length=np.exp(_LENGTHS)[:, None])
-        table = closure.ratio(np.log(closure.median) + _PARAMETERS[:, None, None], at)
-        return cls(closure, rig, standard_normals(_NODES, columns=OWN_DEVIATES, seed=1), table)
+        self.table = closure.ratio(np.log(closure.median) + _PARAMETERS[:, None, None], at)
+        self.deviates = standard_normals(_NODES, columns=OWN_DEVIATES, seed=1)
 
     def __call__(self, hyperparameters: Floats) -> Floats:
         """Logarithm of the likelihood of each row of hyperparameters.
@@ -272,7 +248,7 @@ class RigLikelihood:
     def _batch(self, hyperparameters: Floats) -> Floats:
         """Logarithm of the likelihood of not too many rows."""
         at = self.rig.at
-        own = own_parameters(hyperparameters[:, None], self.deviates, at)
+        own = OwnParameters(hyperparameters[:, None], self.deviates, at)
         ratio = self._ratios(own)
         residual = self.rig.friction_ratio - ratio
         covariance = covariance_of_tests(

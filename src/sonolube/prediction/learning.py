@@ -25,7 +25,7 @@ def sampled_hyperparameters(
     closure: Closure, rigs: tuple[TestedRig, ...], *, steps: int = 3000, seed: int = 0
 ) -> Floats:
     """Draws from the posterior of one friction model, shape (draws, 6), the first third of the steps left out."""
-    likelihoods = [RigLikelihood.of(closure, rig) for rig in rigs]
+    likelihoods = [RigLikelihood(closure, rig) for rig in rigs]
 
     def log_density(rows: Floats) -> Floats:
         prior = log_hyperprior(closure, rows)

@@ -41,7 +41,6 @@ from sonolube.prediction.hierarchy import (
     discrepancy_correlation,
     discrepancy_deviation,
     log_normal_density,
-    own_parameters,
     standard_normals,
 )
 from sonolube.prediction.wear import WEAR_HYPERPARAMETERS, WearPosterior, published_wear
@@ -153,7 +152,7 @@ class Population:
         """Population of some rigs under a prior."""
         means, deviations = prior.of(closure)
         draws = means + deviations * standard_normals(PRIOR_DRAWS, columns=len(HYPERPARAMETERS), seed=2)
-        logs = np.column_stack([RigLikelihood.of(closure, rig)(draws) for rig in rigs])
+        logs = np.column_stack([RigLikelihood(closure, rig)(draws) for rig in rigs])
         return cls(closure=closure, draws=draws, log_likelihoods=logs)
 
     def posterior(self, *, without: tuple[int, ...] = ()) -> Posterior:
@@ -228,7 +227,7 @@ class RigDraws:
     @property
     def parameters(self) -> OwnParameters:
         """Parameters of each draw."""
-        return own_parameters(self.hyperparameters, self.deviates, self.at)
+        return OwnParameters(self.hyperparameters, self.deviates, self.at)
 
     def means(self, conditions: Conditions) -> Floats:
         """Friction ratios of the friction model without discrepancy, shape (p, m). []"""

@@ -36,11 +36,17 @@ _CONTRADICTION: Final = 0.05  # probability below which runs contradict the pred
 _OUTLIER: Final = 0.05  # probability, over all runs, below which one disagrees with the others
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class RunCheck:
     """Own runs against the prediction before them, and against each other.
 
     Parameters
+    ----------
+    before, after : RigDraws
+        Draws before and after the runs.
+    own : TestedRig
+        The runs.
+
+    Attributes
     ----------
     probability : float
         That runs as predicted speak as much against the prediction as these do.
@@ -52,11 +58,22 @@ class RunCheck:
         Two-sided, of each run given the others; 1 for fewer than four runs.
     """
 
-    probability: float
-    lows: Floats
-    highs: Floats
-    left_out: Floats
-    outlier_probability: Floats
+    def __init__(self, before: RigDraws, after: RigDraws, own: TestedRig) -> None:
+        count = own.friction_ratio.size
+        seen = replace(before.taken(np.arange(min(before.rows.size, _COMPARED))), own=own)
+        means = seen.means(own.at.conditions)
+        factors = np.asarray(np.linalg.cholesky(seen.covariance(means)))
+        self.left_out, self.outlier_probability = np.full(count, np.nan), np.ones(count)
+        if count >= _FEWEST:
+            self.left_out, deviation = _left_out(before, after, own)
+            z = np.abs(own.friction_ratio - self.left_out) / deviation
+            from scipy.special import stdtr
+
+            self.outlier_probability = np.asarray(2 * stdtr(count - 1, -z))
+        drawn = means + np.einsum("pij,pj->pi", factors, np.random.default_rng(3).standard_normal(means.shape))
+        self.probability = _predictive_probability(means, factors, drawn, own)
+        lows, self.highs = np.quantile(drawn, [0.025, 0.975], axis=0)
+        self.lows = np.maximum(lows, 0.0)
 
     @property
     def contradicted(self) -> bool:
@@ -81,30 +98,6 @@ def student_weights(before: RigDraws, after: RigDraws, own: TestedRig) -> Floats
     noise = own.uncertainty**2
     z_squared = np.maximum((own.friction_ratio - middle) ** 2 - (deviation**2 - noise), 0.0) / noise
     return np.asarray(np.minimum((_FREEDOM + 1) / (_FREEDOM + z_squared), 1.0))
-
-
-def checked_runs(before: RigDraws, after: RigDraws, own: TestedRig) -> RunCheck:
-    """Check of runs by draws before and after them."""
-    count = own.friction_ratio.size
-    seen = replace(before.taken(np.arange(min(before.rows.size, _COMPARED))), own=own)
-    means = seen.means(own.at.conditions)
-    factors = np.linalg.cholesky(seen.covariance(means))
-    left_out, outlier = np.full(count, np.nan), np.ones(count)
-    if count >= _FEWEST:
-        left_out, deviation = _left_out(before, after, own)
-        z = np.abs(own.friction_ratio - left_out) / deviation
-        from scipy.special import stdtr
-
-        outlier = np.asarray(2 * stdtr(count - 1, -z))
-    drawn = means + np.einsum("pij,pj->pi", factors, np.random.default_rng(3).standard_normal(means.shape))
-    lows, highs = np.quantile(drawn, [0.025, 0.975], axis=0)
-    return RunCheck(
-        probability=_predictive_probability(means, np.asarray(factors), drawn, own),
-        lows=np.maximum(lows, 0.0),
-        highs=highs,
-        left_out=left_out,
-        outlier_probability=outlier,
-    )
 
 
 def _predictive_probability(means: Floats, factors: Floats, drawn: Floats, own: TestedRig) -> float:
@@ -234,7 +227,7 @@ def rig_prediction(
         if np.allclose(uncertainty, draws.own.uncertainty, rtol=0.1):
             break
         draws = rig_draws(posterior, at, count=count, seed=seed, own=replace(own, uncertainty=uncertainty))
-    return RigPrediction(draws=draws, check=checked_runs(before, draws, own), count=count)
+    return RigPrediction(draws=draws, check=RunCheck(before, draws, own), count=count)
 
 
 def ratio_draws(

@@ -12,8 +12,10 @@ between two views of that gap: wear that follows the friction, and wear by the s
 depends on the amplitude alone.
 """
 
+import tomllib
 from dataclasses import dataclass
 from functools import cache
+from importlib.resources import files
 from typing import Final
 
 import numpy as np
@@ -29,8 +31,6 @@ WEAR_HYPERPARAMETERS: Final = ("wear_rate_ratio", "pair_spread", "test_spread")
 WEAR_PRIOR: Final = ((np.log(0.7), np.log(0.5), np.log(0.1)), (0.7, 0.7, 0.7))
 """Means and standard deviations of the normal prior of these logarithms."""
 
-_PRINTED: Final = 0.02  # standard uncertainty of ln of a ratio of printed wear rates, from their digits
-_IN_WORDS: Final = 0.2  # of "no reduction", taken as a ratio of 1
 _WEIGHT_SPREAD: Final = np.log(5.0)  # of ln k, by which two views of the gap between the tests and no vibration differ
 _RIG_SPREAD: Final = 0.3  # of ln ratio between rigs of one pair, of which each published pair has one: an assumption
 _NEAR: Final = 0.5  # difference of weights over which a departure of own tests holds
@@ -50,12 +50,15 @@ class WearPair:
     uncertainty : float
         Standard uncertainty of its logarithm as printed.
     source : str
+    sides : pair of tuple of str
+        Materials or families of either side; any steel stands for any other.
     """
 
     name: str
     wear_rate_ratio: Floats
     uncertainty: float
     source: str
+    sides: tuple[tuple[str, ...], tuple[str, ...]] = ((), ())
 
 
 @cache
@@ -64,24 +67,16 @@ def published_wear() -> tuple[WearPair, ...]:
 
     For both pairs with a titanium disc D states in words that wear was not reduced; that is a ratio of 1, uncertain.
     """
-    speeds = [1 - si_value(f"table-2.5-wear_reduction-{row}") for row in (1, 2, 3)]
-    distances = [1 - si_value(f"table-2.7-wear_reduction-{row}") for row in (1, 2, 3)]
-    pairs = [("stainless steel on aluminium", [*speeds, *distances], _PRINTED, "Tables 2.5 and 2.7")]
-    pairs += [
-        (name, [1 - si_value(f"table-2.14-wear_reduction-{row}")], _PRINTED, "Table 2.14")
-        for name, row in (
-            ("stainless steel on stainless steel", 2),
-            ("ceramic on M50 tool steel", 5),
-            ("M50 tool steel on M50 tool steel", 6),
-        )
-    ]
-    pairs += [
-        (name, [1.0], _IN_WORDS, "Table 2.14, in words")
-        for name in ("stainless steel on titanium", "titanium on titanium")
-    ]
+    text = files("sonolube.prediction").joinpath("published_wear.toml").read_text(encoding="utf-8")
     return tuple(
-        WearPair(name=name, wear_rate_ratio=np.array(ratios), uncertainty=uncertainty, source=source)
-        for name, ratios, uncertainty, source in pairs
+        WearPair(
+            name=entry["name"],
+            wear_rate_ratio=np.array([1 - si_value(fact) for fact in entry["wear_reductions"]] or [1.0]),
+            uncertainty=entry["uncertainty"],
+            source=entry["source"],
+            sides=(tuple(entry["pin"]), tuple(entry["disc"])),
+        )
+        for entry in tomllib.loads(text)["pairs"]
     )
 
 

@@ -8,30 +8,13 @@ import numpy as np
 from scipy.stats import chi2
 
 from sonolube.checks import Floats
-from sonolube.identification.decay_length.posterior import HYPOTHESES, RunPosterior
+from sonolube.identification.decay_length.posterior import DECISION_TEXTS, HYPOTHESES, RunPosterior
 from sonolube.identification.decay_length.run_model import DIFFERENCE, Channel, run_channels
 from sonolube.identification.decay_length.switch_table import SwitchConditions, SwitchTable
 from sonolube.identification.decay_length.zero_error import ZeroEvidence, zero_evidence
 
-_READINGS: Final = {
-    "friction_ratio": "the friction ratio",
-    "stack_current": "the stack current",
-    "small_drive_shift": "the shift at small drive",
-    "large_drive_shift": "the shift at large drive",
-}
-_APART: Final = {
-    frozenset(("long_sliding", "none")): "slide farther on a fresh track, with the small-drive shift at each switch",
-    frozenset(("detuning", "none")): "slide farther, and read the current, and the shift at large drive, more finely",
-    frozenset(("zero_error", "none")): "lift the pin longer at each switch, and calibrate the cell before and after",
-    frozenset(("long_sliding", "detuning")): "read the stack current and the shift at small drive at each switch: the"
-    " current tells the amplitude, the shift the contact stiffness",
-}  # fmt: skip
+_READINGS: Final[Mapping[str, str]] = DECISION_TEXTS["readings"]
 _ALONE: Final = "so that one quantity changes at a time: tare at each switch, and track the resonance"
-_CHANGES: Final = {
-    "long_sliding": "the decay length grows by a factor of",
-    "detuning": "the amplitude falls by a factor of",
-    "zero_error": "the zero biases the decay length by a factor of",
-}
 
 
 class Undecided(NamedTuple):
@@ -43,11 +26,12 @@ class Undecided(NamedTuple):
 
 def decided_sentence(leading: str, probabilities: Mapping[str, float]) -> str:
     """Sentence of the hypothesis that is decided, with its probability and that of the next."""
-    name, _, meaning = HYPOTHESES[leading].partition(":")
+    hypothesis = HYPOTHESES[leading]
     others = sorted((p, other) for other, p in probabilities.items() if other != leading)
-    following = HYPOTHESES[others[-1][1]].partition(":")[0]
+    following = HYPOTHESES[others[-1][1]].title
     return (
-        f"{name} ({_percent(probabilities[leading])}): {meaning.strip()}; next {following} ({_percent(others[-1][0])})"
+        f"{hypothesis.title} ({_percent(probabilities[leading])}): {hypothesis.meaning}; next {following}"
+        f" ({_percent(others[-1][0])})"
     )
 
 
@@ -72,7 +56,7 @@ def other_reason(probability: float) -> Undecided:
 
 def several_reason(probability: float, parts: Sequence[str]) -> Undecided:
     """Reason where more than one quantity changes."""
-    named = " and ".join(HYPOTHESES[name].partition(":")[0] for name in parts)
+    named = " and ".join(HYPOTHESES[name].title for name in parts)
     return Undecided(
         verdict=f"not decided: more than one quantity changes ({_percent(probability)}): {named}",
         advice=f"repeat {_ALONE}",
@@ -82,10 +66,8 @@ def several_reason(probability: float, parts: Sequence[str]) -> Undecided:
 def rivals_reason(probabilities: Mapping[str, float], missing: Sequence[str]) -> Undecided:
     """Reason where no hypothesis is probable enough."""
     first, second = sorted(probabilities, key=lambda name: -probabilities[name])[:2]
-    both = " or ".join(
-        f"{HYPOTHESES[name].partition(':')[0]} ({_percent(probabilities[name])})" for name in (first, second)
-    )
-    advice = _APART.get(frozenset((first, second)), f"repeat {_ALONE}")
+    both = " or ".join(f"{HYPOTHESES[name].title} ({_percent(probabilities[name])})" for name in (first, second))
+    advice = DECISION_TEXTS["apart"].get("-".join(sorted((first, second))), f"repeat {_ALONE}")
     if missing:
         advice += f"; this run lacks {', '.join(_READINGS[name].removeprefix('the ') for name in missing)}"
     return Undecided(verdict=f"not decided: {both}", advice=advice)
@@ -94,8 +76,8 @@ def rivals_reason(probabilities: Mapping[str, float], missing: Sequence[str]) ->
 def unsteady_reason(name: str, factor: float, steady: float) -> Undecided:
     """Reason where nothing changes enough to explain the sets, but something may change."""
     return Undecided(
-        verdict=f"not decided: no change explains the difference between the published sets, but {_CHANGES[name]} up to"
-        f" {factor:.2f} (steady is {steady:.2f})",
+        verdict=f"not decided: no change explains the difference between the published sets, but"
+        f" {HYPOTHESES[name].change} up to {factor:.2f} (steady is {steady:.2f})",
         advice="read more switches, over a longer distance",
     )
 
@@ -103,8 +85,8 @@ def unsteady_reason(name: str, factor: float, steady: float) -> Undecided:
 def too_little_reason(leading: str, factor: float, sufficient: float) -> Undecided:
     """Reason where the change that leads is too small for the difference between the published sets."""
     return Undecided(
-        verdict=f"not decided: {_CHANGES[leading]} {factor:.2f}, too little for the 2.9 between the published sets"
-        f" (a third of it in the logarithm is {sufficient:.2f})",
+        verdict=f"not decided: {HYPOTHESES[leading].change} {factor:.2f}, too little for the 2.9 between the published"
+        f" sets (a third of it in the logarithm is {sufficient:.2f})",
         advice="slide farther on a fresh track, or repeat under the conditions of a set with the other decay length",
     )
 

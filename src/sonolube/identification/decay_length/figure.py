@@ -48,7 +48,7 @@ def decision_dataset(table: SwitchTable, decision: DecayLengthDecision) -> "xr.D
         data[name] = (axis, values, _attributes(name))
     for hypothesis, courses in decision.courses.items():
         for name, values in courses.items():
-            long_name = f"{quantity(name).meaning}, fitted: {HYPOTHESES[hypothesis].partition(':')[0]}"
+            long_name = f"{quantity(name).meaning}, fitted: {HYPOTHESES[hypothesis].title}"
             data[f"{name}_by_{hypothesis}"] = (axis, values, _attributes(name) | {"long_name": long_name})
     names = list(decision.probabilities)
     probability = np.array([decision.probabilities[name] for name in names])
@@ -115,7 +115,7 @@ def _courses(table: SwitchTable, name: str, decision: DecayLengthDecision) -> li
     if name == "force_zero":
         return [Line(x=s[decision.zero.rows], y=decision.zero.force_zero, colour=3)]
     return [
-        Line(x=s, y=courses[name], label=HYPOTHESES[hypothesis].partition(":")[0], colour=place, dash=place)
+        Line(x=s, y=courses[name], label=HYPOTHESES[hypothesis].title, colour=place, dash=place)
         for place, (hypothesis, courses) in enumerate(decision.courses.items())
         if name in courses
     ]

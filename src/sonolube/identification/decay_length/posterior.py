@@ -1,12 +1,14 @@
 """Evidence of models with normal priors by importance sampling, and the posterior of changes in a run."""
 
+import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from importlib.resources import files
 from itertools import product
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
-from scipy.special import logsumexp
+from scipy.special import gammaln, logsumexp
 
 from sonolube.checks import Floats
 from sonolube.identification.decay_length.run_model import PARAMETERS, Changes, Channel, RunModel
@@ -155,8 +157,6 @@ def _t_draws(rng: np.random.Generator, mean: Floats, factor: Floats) -> Floats:
 
 def _log_mixture(draws: Floats, proposals: Sequence[tuple[Floats, Floats]]) -> Floats:
     """Logarithm of the mean density of multivariate t distributions at draws."""
-    from scipy.special import gammaln, logsumexp
-
     count = draws.shape[1]
     constant = gammaln((_FREEDOM + count) / 2) - gammaln(_FREEDOM / 2) - 0.5 * count * np.log(_FREEDOM * np.pi)
     logs = []
@@ -168,15 +168,22 @@ def _log_mixture(draws: Floats, proposals: Sequence[tuple[Floats, Floats]]) -> F
     return np.asarray(logsumexp(logs, axis=0) - np.log(len(logs)))
 
 
-HYPOTHESES: Final[Mapping[str, str]] = {
-    "long_sliding": "long sliding: the decay length grows with the sliding distance",
-    "zero_error": "zero error: the zero of the load cell is off",
-    "detuning": "detuning: the amplitude at the contact falls during the run",
-    "none": "none of them: decay length, zero and amplitude stay, the decay length belongs to the rig",
-    "several": "several at once",
-    "other": "something else: the friction ratio changes by itself",
-}
-"""Hypotheses about what sets the decay length by name, each in words."""
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Hypothesis:
+    """What sets the decay length: in two words, in a sentence, and how its change is measured."""
+
+    title: str
+    meaning: str = ""
+    change: str = ""
+
+
+DECISION_TEXTS: Final[Mapping[str, Any]] = tomllib.loads(
+    files("sonolube.identification.decay_length").joinpath("hypotheses.toml").read_text(encoding="utf-8")
+)
+"""Hypotheses, names of readings, and what tells two hypotheses apart."""
+
+HYPOTHESES: Final = {name: Hypothesis(**entry) for name, entry in DECISION_TEXTS["hypotheses"].items()}
+"""Hypotheses about what sets the decay length by name."""
 
 _SEVERAL: Final = 0.1  # prior probability of more than one change, shared by four combinations
 _OTHER: Final = 0.05  # prior probability that the friction ratio changes by itself

@@ -14,7 +14,6 @@ import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -207,19 +206,6 @@ class RoughContact:
         return self.heights.decay * self.decay_length
 
 
-class SeparationFunction(Protocol):
-    """A positive quantity as a function of the normalized separation."""
-
-    def value(self, h: Floats) -> Floats:
-        """Quantity f at these separations."""
-
-    def decay_rate(self, h: Floats) -> Floats:
-        """Logarithmic decay rate -d ln f/dh at these separations."""
-
-    def inverse(self, value: Floats) -> Floats:
-        """Separations at which a monotonically falling quantity has these values."""
-
-
 @dataclass(frozen=True, slots=True)
 class ExponentialDecay:
     """A quantity that decays exponentially with the normalized separation."""
@@ -267,6 +253,10 @@ class LogSpline:
         for _ in range(2):
             h -= (self._log(h) - target) / self._slope(h)
         return h
+
+
+SeparationFunction = ExponentialDecay | LogSpline
+"""A positive quantity as a function of the normalized separation: its value, its rate of decay and its inverse."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -189,7 +189,8 @@ def march_until_settled(
     attractor = classify_attractor(
         structure, gap_law, **point, initial_state=marched.final_state, periods=observed, steps_per_period=steps
     )
-    recorded = int(attractor.order) or _multiple_of_sixteen(_BEATS * _periods_per_beat(attractor, frequency))
+    slow = float(attractor.beat_frequency)
+    recorded = int(attractor.order) or _multiple_of_sixteen(_BEATS * (frequency / slow) if slow > 0 else 0.0)
     finer = max(steps, _RECORDED_STEPS)
     recorded = min(recorded, _MAX_RECORDED // finer)
     record = trajectory(
@@ -224,12 +225,6 @@ def _changes(earlier: Trajectories, later: Trajectories) -> bool:
 def _multiple_of_sixteen(periods: float) -> int:
     """Number of periods rounded up to a multiple of 16, from 256 to 4096."""
     return int(np.clip(16 * math.ceil(periods / 16), _MIN_PERIODS, _LONGEST))
-
-
-def _periods_per_beat(attractor: Attractors, frequency: float) -> float:
-    """Number of drive periods per beat, zero without a beat."""
-    slow = float(attractor.beat_frequency)
-    return frequency / slow if slow > 0 else 0.0
 
 
 def _dissipated_power(structure: Structure, gap_law: GapLaw, record: Trajectory, load: float) -> float:

@@ -92,7 +92,7 @@ def march(
     Notes
     -----
     Without contact force the steps are exact, whatever their length, under any waveform and a linear ramp. The contact
-    force is integrated to fifth order (`exponential_integrator`) where it is smooth: under the exponential law, before
+    force is integrated to fifth order (`ExponentialIntegrator`) where it is smooth: under the exponential law, before
     and after a jump of the voltage or the end of a ramp, at which the integration restarts. Where contact of spheres or
     springs is lost, or damping would make the force tensile, the force has a corner and the order falls to two;
     `advice` names this. An amplitude of fourteen micrometres over a decay length of two takes 12 steps per period for
@@ -245,12 +245,10 @@ def _start(modes: FirstOrderModes, structure: Structure, state: State | None, sh
     n, count = structure.coordinates, int(np.prod(shape))
     if state is None:
         return np.zeros((2 * n, count))
+    given = require_finite(coordinates=state.coordinates), require_finite(velocities=state.velocities)
     try:
-        x = np.broadcast_to(require_finite(coordinates=state.coordinates), (*shape, n)).reshape(count, n)
-        v = np.broadcast_to(require_finite(velocities=state.velocities), (*shape, n)).reshape(count, n)
-    except ValueError as refusal:
-        if isinstance(refusal, InvalidInput):
-            raise
+        x, v = (np.broadcast_to(each, (*shape, n)).reshape(count, n) for each in given)
+    except ValueError:
         raise InvalidInput(
             f"initial_state must have {n} coordinates and velocities for each of {count} points,"
             f" got shapes {np.shape(state.coordinates)} and {np.shape(state.velocities)}"

@@ -167,7 +167,10 @@ def rms_height_from_roughness_average(*, arithmetic_mean_height: float) -> RmsHe
     height = float(require_positive(arithmetic_mean_height=arithmetic_mean_height))
     least, typical, largest = _RMS_PER_AVERAGE
     return RmsHeightEstimate(
-        rms_height=typical * height, low=least * height, high=largest * height, source=_AVERAGE_SOURCE
+        rms_height=typical * height,
+        low=least * height,
+        high=largest * height,
+        source=_content()["sources"]["rms_per_average"],
     )
 
 
@@ -191,7 +194,10 @@ def rms_height_from_maximum_height(*, mean_section_height: float) -> RmsHeightEs
     height = float(require_positive(mean_section_height=mean_section_height))
     least, typical, largest = _MAXIMUM_PER_RMS
     return RmsHeightEstimate(
-        rms_height=height / typical, low=height / largest, high=height / least, source=_MAXIMUM_SOURCE
+        rms_height=height / typical,
+        low=height / largest,
+        high=height / least,
+        source=_content()["sources"]["maximum_per_rms"],
     )
 
 
@@ -247,29 +253,17 @@ def typical_summits(*, rms_height: float) -> TypicalSummits:
         summit_density=_ROUGHNESS_PARAMETER / (height * radius),
         radius_factor=factor,
         density_factor=factor,
-        reason=_POLISHED_REASON if polished else _FINISHED_REASON,
+        reason=_content()["summits"]["polished" if polished else "finished"],
     )
 
 
-# least, typical and largest ratio, and source
+# least, typical and largest ratio
 _RMS_PER_AVERAGE = (1.04, math.sqrt(math.pi / 2), 1.43)
-_AVERAGE_SOURCE = "Rq = sqrt(pi/2) Ra for Gaussian heights; 1.04 to 1.43 Ra on the surfaces of D Tables 2.4 and 2.10"
 _MAXIMUM_PER_RMS = (2 * math.sqrt(2), 4.5, 6.4)
-_MAXIMUM_SOURCE = (
-    "Rz = 4 to 8 Ra, turned to lapped, by MetricMech, Surface finish chart, with Rq = sqrt(pi/2) Ra; 2.8 Rq for a sine"
-)
 # mean absolute slope of profiles at an rms height of 1 um, its exponent, and the summits of Gaussian surfaces
 _MEAN_SLOPE, _SLOPE_EXPONENT = 0.125, 0.402
 _ROUGHNESS_PARAMETER = 0.04
 _POLISHED = 0.05e-6
-_FINISHED_REASON = (
-    "surfaces of one height differ in slope by a factor of two, which the radius squares, and a finer sampling finds "
-    "sharper and more summits: scan the surface to know them"
-)
-_POLISHED_REASON = (
-    "below an rms height of 0.05 um the slope depends on the wavelengths that polishing left, more than on the height: "
-    "scan the surface to know them"
-)
 
 
 def _graded(process: SurfaceFinish, grade: SurfaceFinish) -> SurfaceFinish:

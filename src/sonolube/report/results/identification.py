@@ -63,7 +63,7 @@ def rows(found: DecayLengthDecision) -> list[tuple[str, str]]:
     """Probabilities of the hypotheses, the likeliest first, and the changes that were found."""
     by_probability = sorted(found.probabilities.items(), key=lambda item: -item[1])
     return [
-        *((HYPOTHESES[name].partition(":")[0], f"{100 * value:.1f} %") for name, value in by_probability),
+        *((HYPOTHESES[name].title, f"{100 * value:.1f} %") for name, value in by_probability),
         ("decay length grows", f"by a factor of {_factor(found.growth)}"),
         ("amplitude falls", f"by a factor of {_factor(found.fall)}"),
         ("zero, if not subtracted", f"makes the decay length wrong by a factor of {_factor(found.zero_factor)}"),

@@ -255,42 +255,37 @@ class HertzGap:
         require_non_negative(force_damping=self.force_damping)
 
     @property
-    def coefficient(self) -> float:
+    def kernel_parameter(self) -> float:
         """Force over approach to the power 3/2, 4/3 E* sqrt(R), in N/m^1.5."""
         return 4 / 3 * self.effective_modulus * math.sqrt(self.tip_radius)
 
-    @property
-    def kernel_parameter(self) -> float:
-        """Hertz coefficient, in N/m^1.5."""
-        return self.coefficient
-
     def force(self, displacement: Floats, normal_load: Floats | float) -> Floats:
         """Elastic contact force. [N]"""
-        return self.coefficient * self._approach(displacement, normal_load) ** 1.5
+        return self.kernel_parameter * self._approach(displacement, normal_load) ** 1.5
 
     def stiffness(self, displacement: Floats, normal_load: Floats | float) -> Floats:
         """Contact stiffness -dF/dx. [N/m]"""
-        return 1.5 * self.coefficient * np.sqrt(self._approach(displacement, normal_load))
+        return 1.5 * self.kernel_parameter * np.sqrt(self._approach(displacement, normal_load))
 
     def loss_displacement(self, normal_load: Floats | float) -> Floats:
         """Displacement beyond which contact counts as lost. [m]"""
-        return np.asarray((normal_load / self.coefficient) ** (2 / 3) * (1 - CONTACT_LOSS_THRESHOLD ** (2 / 3)))
+        return np.asarray((normal_load / self.kernel_parameter) ** (2 / 3) * (1 - CONTACT_LOSS_THRESHOLD ** (2 / 3)))
 
     def equilibrium_coordinate(self, normal_load: Floats | float) -> Floats:
         """Approach under the dead load, in m."""
-        return np.asarray((normal_load / self.coefficient) ** (2 / 3))
+        return np.asarray((normal_load / self.kernel_parameter) ** (2 / 3))
 
     def force_derivatives(self, displacement: Floats, normal_load: float) -> dict[str, Floats]:
         """Derivatives of the elastic force by dead load, radius and modulus."""
-        rest = (normal_load / self.coefficient) ** (2 / 3)
+        rest = (normal_load / self.kernel_parameter) ** (2 / 3)
         approach = self._approach(displacement, normal_load)
-        stiffness = 1.5 * self.coefficient * np.sqrt(approach)
-        by_coefficient = approach**1.5 - stiffness * 2 / 3 * rest / self.coefficient
+        stiffness = 1.5 * self.kernel_parameter * np.sqrt(approach)
+        by_coefficient = approach**1.5 - stiffness * 2 / 3 * rest / self.kernel_parameter
         return {
             "normal_load": stiffness * 2 / 3 * rest / normal_load,
-            "tip_radius": by_coefficient * 0.5 * self.coefficient / self.tip_radius,
-            "effective_modulus": by_coefficient * self.coefficient / self.effective_modulus,
+            "tip_radius": by_coefficient * 0.5 * self.kernel_parameter / self.tip_radius,
+            "effective_modulus": by_coefficient * self.kernel_parameter / self.effective_modulus,
         }
 
     def _approach(self, displacement: Floats, normal_load: Floats | float) -> Floats:
-        return np.maximum((normal_load / self.coefficient) ** (2 / 3) - displacement, 0.0)
+        return np.maximum((normal_load / self.kernel_parameter) ** (2 / 3) - displacement, 0.0)

@@ -205,37 +205,23 @@ class HarmonicBalanceEquations:
 
     def at(self, unknowns: Floats, *, omega: float, scale: float) -> "HarmonicBalanceResidual":
         """Residual and derivatives at a vector of unknowns; `unknowns` has shape (2H + 1,)."""
-        mean, harmonics = self.unstack(unknowns)
-        x = mean + (self.basis @ harmonics).real
-        v = (self.basis @ (1j * omega * self.multiples * harmonics)).real
-        elastic = self.gap_law.force(x, self.normal_load)
-        tau = self.gap_law.force_damping
-        factor = np.maximum(1 - tau * v, 0.0)
-        return HarmonicBalanceResidual(
-            equations=self,
-            omega=omega,
-            scale=scale,
-            unknowns=unknowns,
-            displacement=x,
-            velocity=v,
-            force=factor * elastic,
-            stiffness=factor * self.gap_law.stiffness(x, self.normal_load),
-            damping=tau * elastic * (factor > 0),
-        )
+        return HarmonicBalanceResidual(self, unknowns, omega=omega, scale=scale)
 
 
-@dataclass(frozen=True, kw_only=True)
 class HarmonicBalanceResidual:
     """Residual of harmonic balance at one vector of unknowns, with its derivatives; samples span one period.
 
     Parameters
     ----------
     equations : HarmonicBalanceEquations
+    unknowns : ndarray, shape (2H + 1,)
     omega : float
         Angular frequency of the drive, in rad/s.
     scale : float
         Factor on the harmonics of the drive.
-    unknowns : ndarray, shape (2H + 1,)
+
+    Attributes
+    ----------
     displacement : ndarray, shape (samples,)
         Displacement of the contact. [m]
     velocity : ndarray, shape (samples,)
@@ -246,15 +232,16 @@ class HarmonicBalanceResidual:
         Contact stiffness -dF/dx, in N/m, and damping -dF/dv, in N s/m.
     """
 
-    equations: HarmonicBalanceEquations
-    omega: float
-    scale: float
-    unknowns: Floats
-    displacement: Floats
-    velocity: Floats
-    force: Floats
-    stiffness: Floats
-    damping: Floats
+    def __init__(self, equations: HarmonicBalanceEquations, unknowns: Floats, *, omega: float, scale: float) -> None:
+        self.equations, self.unknowns, self.omega, self.scale = equations, unknowns, omega, scale
+        law, load, (mean, harmonics) = equations.gap_law, equations.normal_load, equations.unstack(unknowns)
+        self.displacement: Floats = mean + (equations.basis @ harmonics).real
+        self.velocity: Floats = (equations.basis @ (1j * omega * equations.multiples * harmonics)).real
+        elastic = law.force(self.displacement, load)
+        factor = np.maximum(1 - law.force_damping * self.velocity, 0.0)
+        self.force = factor * elastic
+        self.stiffness = factor * law.stiffness(self.displacement, load)
+        self.damping = law.force_damping * elastic * (factor > 0)
 
     @cached_property
     def per_force(self) -> Complexes:

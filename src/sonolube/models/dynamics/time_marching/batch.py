@@ -13,7 +13,7 @@ from sonolube.models.dynamics.gap_laws.closed_form import GapLaw, damped_force
 from sonolube.models.dynamics.gap_laws.table import kernel_law
 from sonolube.models.dynamics.kernels.contact_kernel import EXPONENTIAL
 from sonolube.models.dynamics.linear import FirstOrderModes
-from sonolube.models.dynamics.time_marching.integrator import ExponentialIntegrator, exponential_integrator
+from sonolube.models.dynamics.time_marching.integrator import ExponentialIntegrator
 from sonolube.models.dynamics.time_marching.marching_kernel import LANES, STATISTICS, march_lanes, row_layout
 from sonolube.models.dynamics.waveform import StartUpRamp, Waveform, jump_phases
 
@@ -193,7 +193,7 @@ def march_on_cpu(problem: MarchingProblem, workers: int) -> MarchingSolution:
     with thread_pool(workers) as pool:
         for block in _blocks(count):
             frequency, where = np.unique(problem.frequency[block], return_inverse=True)
-            integrator = exponential_integrator(
+            integrator = ExponentialIntegrator(
                 problem.modes, problem.contact_output, frequency=frequency, steps=steps, waveform=schedule.waveform
             )
             step_response[:, block] = integrator.ahead[where, :, 0].sum(axis=-1).T

@@ -10,7 +10,6 @@ linear recursive filter of these values.
 """
 
 import math
-from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -27,11 +26,40 @@ _NODES = 16  # of the quadrature over a step, beside those that a fast pole requ
 _LARGEST_PHASE = 1000.0  # modulus of the fastest pole times the step, in radians, beyond which nodes are too many
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+def step_quadrature(modes: FirstOrderModes, *, steps: int, slowest: float) -> tuple[Floats, Floats]:
+    """Gauss-Legendre nodes and weights from 0 to 1 that resolve the free motion over a step; shape (nodes,)."""
+    phase = _fastest(modes) / (steps * slowest)
+    if phase > _LARGEST_PHASE:
+        raise InvalidInput(
+            f"steps_per_period = {steps} is too few for a drive as slow as {slowest:.3g} Hz beside this structure's"
+            f" fastest mode; take {minimum_steps(modes, frequency=slowest)} at least, or a higher frequency"
+        )
+    return _gauss_legendre(_NODES + int(np.ceil(0.6 * phase)))
+
+
 class ExponentialIntegrator:
     r"""Coefficients of a time step at each of several drive frequencies, all with the same number of steps per period.
 
+    Between its samples the force is the combination of a constant, the first two harmonics of the drive and, where six
+    samples are available, a straight line that passes through them: for many steps a polynomial, for few steps exact
+    for what a steady contact force mostly consists of. The displacement is predicted from five past forces (exponential
+    Adams-Bashforth); the new force at that displacement corrects the state (exponential Adams-Moulton). The order is
+    five
+
+    Source: M. Hochbruck and A. Ostermann, Acta Numerica 19, 209 (2010). doi:10.1017/S0962492910000048
+
     Parameters
+    ----------
+    modes : FirstOrderModes
+    contact_output : ndarray, shape (2, n, 2)
+        Displacement and velocity of the contact per state.
+    frequency : ndarray, shape (frequencies,)
+        Of the drive. [Hz]
+    steps : int
+        Per period.
+    waveform : Sine or PiecewiseLinear
+
+    Attributes
     ----------
     propagator : ndarray, shape (frequencies, n, 2, 2)
         State transition matrices E = exp(A h).
@@ -62,80 +90,41 @@ class ExponentialIntegrator:
     where d is the contribution of the drive.
     """
 
-    propagator: Floats
-    oldest: Floats
-    recent: Floats
-    predictor: Floats
-    ahead: Floats
-    backward: Floats
-    wave: Floats
-    offset: Floats
+    def __init__(
+        self, modes: FirstOrderModes, contact_output: Floats, *, frequency: Floats, steps: int, waveform: Waveform
+    ) -> None:
+        h = 1 / (frequency * steps)
+        nodes, weights = step_quadrature(modes, steps=steps, slowest=float(frequency.min()))
+        theta, back, ahead = 2 * np.pi / steps, 1.0 - np.arange(PAST + 1.0), np.arange(float(PAST))  # samples, in steps
+        # exp(A h (1 - s)) c
+        moved = _propagated(modes.state_matrix, modes.contact_input, np.multiply.outer(h, 1 - nodes))
+        moved *= h[:, np.newaxis, np.newaxis, np.newaxis]
 
+        def added(sampled_at: Floats, first: int = 0) -> Floats:
+            """State that each sample of the force adds over a step, by its interpolation at the nodes."""
+            sample_weights = _interpolation(first + nodes, sampled_at, theta) * weights[:, np.newaxis]
+            return np.asarray(np.einsum("fmqa,qj->fjma", moved, sample_weights))
 
-def step_quadrature(modes: FirstOrderModes, *, steps: int, slowest: float) -> tuple[Floats, Floats]:
-    """Gauss-Legendre nodes and weights from 0 to 1 that resolve the free motion over a step; shape (nodes,)."""
-    phase = _fastest(modes) / (steps * slowest)
-    if phase > _LARGEST_PHASE:
-        raise InvalidInput(
-            f"steps_per_period = {steps} is too few for a drive as slow as {slowest:.3g} Hz beside this structure's"
-            f" fastest mode; take {minimum_steps(modes, frequency=slowest)} at least, or a higher frequency"
-        )
-    return _gauss_legendre(_NODES + int(np.ceil(0.6 * phase)))
-
-
-def exponential_integrator(
-    modes: FirstOrderModes, contact_output: Floats, *, frequency: Floats, steps: int, waveform: Waveform
-) -> ExponentialIntegrator:
-    """Coefficients of a time step at each drive frequency.
-
-    `contact_output` has shape (2, n, 2).
-
-    Between its samples the force is the combination of a constant, the first two harmonics of the drive and, where six
-    samples are available, a straight line that passes through them: for many steps a polynomial, for few steps exact
-    for what a steady contact force mostly consists of. The displacement is predicted from five past forces (exponential
-    Adams-Bashforth); the new force at that displacement corrects the state (exponential Adams-Moulton). The order is
-    five
-
-    Source: M. Hochbruck and A. Ostermann, Acta Numerica 19, 209 (2010). doi:10.1017/S0962492910000048
-    """
-    h = 1 / (frequency * steps)
-    nodes, weights = step_quadrature(modes, steps=steps, slowest=float(frequency.min()))
-    theta, back, ahead = 2 * np.pi / steps, 1.0 - np.arange(PAST + 1.0), np.arange(float(PAST))  # samples, in steps
-    moved = _propagated(modes.state_matrix, modes.contact_input, np.multiply.outer(h, 1 - nodes))  # exp(A h (1 - s)) c
-    moved *= h[:, np.newaxis, np.newaxis, np.newaxis]
-
-    def added(sampled_at: Floats, first: int = 0) -> Floats:
-        """State that each sample of the force adds over a step, by its interpolation at the nodes."""
-        sample_weights = _interpolation(first + nodes, sampled_at, theta) * weights[:, np.newaxis]
-        return np.asarray(np.einsum("fmqa,qj->fjma", moved, sample_weights))
-
-    units = [np.broadcast_to(row, modes.contact_input.shape) for row in np.eye(2)]
-    columns = [_propagated(modes.state_matrix, unit, h[:, np.newaxis])[:, :, 0] for unit in units]
-    propagator = np.stack(columns, axis=-1)
-    corrected = added(back)
-    recent = corrected[:, :PAST].copy()
-    for j in range(1, PAST):  # filter W(q) = (1 - E q) V(q) + q^5 U, with the delay operator q
-        recent[:, j] += _apply(propagator, recent[:, j - 1])
-    oldest = corrected[:, PAST] + _apply(propagator, recent[:, PAST - 1])
-    predictor = _at_contact(contact_output, added(back[1:]))
-    predictor += _at_contact(contact_output, np.stack([_apply(propagator, recent[:, j]) for j in range(PAST)], axis=1))
-    predictor[..., PAST - 1] -= np.einsum("kma,fma->fk", contact_output, oldest)
-    later, reached = [], np.zeros_like(recent)
-    for first in range(PAST - 1):
-        reached = np.stack([_apply(propagator, reached[:, j]) for j in range(PAST)], axis=1)
-        reached += added(ahead, first)
-        later.append(_at_contact(contact_output, reached))
-    wave, offset = _drive_contributions(modes, h, steps, waveform, nodes, weights)
-    return ExponentialIntegrator(
-        propagator=propagator,
-        oldest=oldest,
-        recent=recent,
-        predictor=predictor,
-        ahead=np.stack(later, axis=2),
-        backward=_interpolation(-ahead, ahead, theta),
-        wave=wave,
-        offset=offset,
-    )
+        units = [np.broadcast_to(row, modes.contact_input.shape) for row in np.eye(2)]
+        columns = [_propagated(modes.state_matrix, unit, h[:, np.newaxis])[:, :, 0] for unit in units]
+        self.propagator = np.stack(columns, axis=-1)
+        corrected = added(back)
+        self.recent = corrected[:, :PAST].copy()
+        for j in range(1, PAST):  # filter W(q) = (1 - E q) V(q) + q^5 U, with the delay operator q
+            self.recent[:, j] += _apply(self.propagator, self.recent[:, j - 1])
+        self.oldest = corrected[:, PAST] + _apply(self.propagator, self.recent[:, PAST - 1])
+        self.predictor = _at_contact(contact_output, added(back[1:]))
+        propagated = np.stack([_apply(self.propagator, self.recent[:, j]) for j in range(PAST)], axis=1)
+        self.predictor += _at_contact(contact_output, propagated)
+        self.predictor[..., PAST - 1] -= np.einsum("kma,fma->fk", contact_output, self.oldest)
+        later, reached = [], np.zeros_like(self.recent)
+        for first in range(PAST - 1):
+            reached = np.stack([_apply(self.propagator, reached[:, j]) for j in range(PAST)], axis=1)
+            reached += added(ahead, first)
+            later.append(_at_contact(contact_output, reached))
+        self.wave, self.offset = _drive_contributions(modes, h, steps, waveform, nodes, weights)
+        self.ahead = np.stack(later, axis=2)
+        self.backward = _interpolation(-ahead, ahead, theta)
 
 
 def minimum_steps(modes: FirstOrderModes, *, frequency: float) -> int:

@@ -85,14 +85,8 @@ def exponential(argument: float) -> float:
     uu = u * u
     power = (1 / 720 + u * (1 / 5040)) + uu * (1 / 40320 + u * (1 / 362880))
     power = (1.0 + u) + uu * ((1 / 2 + u * (1 / 6)) + uu * ((1 / 24 + u * (1 / 120)) + uu * power))
-    power *= power
-    power *= power
-    power *= power
-    power *= power
-    power *= power
-    power *= power
-    power *= power
-    power *= power
+    for _ in range(8):
+        power *= power
     return power
 
 

@@ -108,7 +108,7 @@ def _divided(subdivision: _Subdivision, singular: Integers) -> _Subdivision:
     order = np.argsort(~is_singular, axis=1, kind="stable")  # singular corners first
     corners = np.take_along_axis(subdivision.corners, order, axis=1)
     barycentric = np.take_along_axis(subdivision.barycentric, order[:, :, np.newaxis], axis=1)
-    division = _EdgeDivision.of(corners, singular_count)
+    division = _EdgeDivision(corners, singular_count)
     labels = np.column_stack([corners, *(division.labels(corners[:, edge]) for edge in EDGES)])
     on_edges = np.stack([(1 - _RATIO) * barycentric[:, a] + _RATIO * barycentric[:, b] for a, b in EDGES], axis=1)
     points = np.concatenate([barycentric, on_edges], axis=1)
@@ -131,19 +131,13 @@ def _divided(subdivision: _Subdivision, singular: Integers) -> _Subdivision:
     )
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class _EdgeDivision:
-    """Labels of the new nodes on divided edges: sorted keys of the edges, and the label of the first new node."""
+    """Labels of the new nodes on the divided edges of tetrahedra whose first `count` corners are singular."""
 
-    keys: Integers
-    first: int
-
-    @classmethod
-    def of(cls, corners: Integers, count: Integers) -> "_EdgeDivision":
-        """Divided edges of tetrahedra whose first `count` corners are singular."""
-        first = int(corners.max()) + 1
+    def __init__(self, corners: Integers, count: Integers) -> None:
+        self.first = int(corners.max()) + 1
         ends = [corners[(count > a) & (count <= b)][:, [a, b]] for a, b in EDGES]
-        return cls(keys=np.unique(_edge_keys(np.concatenate(ends), first)), first=first)
+        self.keys = np.unique(_edge_keys(np.concatenate(ends), self.first))
 
     def labels(self, ends: Integers) -> Integers:
         """Labels of the new nodes on edges given by their ends; meaningless for edges that are not divided."""

@@ -14,7 +14,6 @@ the element matrices of nodes a and b and displacement components i and j are
     P_{ab} = \varepsilon^S_{kl} G_{akbl}
 """
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -63,7 +62,7 @@ def assemble_matrices(model: Model) -> GlobalMatrices:
     sonolube.models.fem.solver.system.assemble_system : The same with boundary conditions applied.
     """
     mesh = model.mesh
-    pattern = _SparsityPattern.of(mesh)
+    pattern = _SparsityPattern(mesh)
     mass, dielectric, dielectric_loss = (_Accumulator(pattern, (1, 1)) for _ in range(3))
     stiffness, stiffness_loss = (_Accumulator(pattern, (3, 3)) for _ in range(2))
     coupling = _Accumulator(pattern, (3, 1))
@@ -99,7 +98,7 @@ def scalar_mass_matrix(model: Model) -> sparse.csc_array:
     value, gradient = shape_functions(mesh.order, points)
     density = np.array([model.media[region].density for region in mesh.regions])[mesh.region_of_element]
     volume = determinant(jacobian_matrices(mesh.nodes[mesh.elements], gradient)) * weights
-    pattern = _SparsityPattern.of(mesh)
+    pattern = _SparsityPattern(mesh)
     total = _Accumulator(pattern, (1, 1))
     total.add(pattern.positions_of_elements.ravel(), _mass_integrals(value, volume * density[:, np.newaxis]))
     return total.matrix()
@@ -122,11 +121,10 @@ def tributary_areas(mesh: Mesh, face: str) -> Floats:
     return weights
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class _SparsityPattern:
     """Pairs of nodes that share an element, as sorted integer keys.
 
-    Parameters
+    Attributes
     ----------
     keys : ndarray of int, shape (p,)
         First node times the number of nodes, plus the second.
@@ -136,24 +134,15 @@ class _SparsityPattern:
         Positions in `keys` of the pairs of nodes of each element.
     """
 
-    keys: Integers
-    size: int
-    positions_of_elements: Integers
-
-    @classmethod
-    def of(cls, mesh: Mesh) -> "_SparsityPattern":
-        """Pattern of the matrices of a mesh."""
+    def __init__(self, mesh: Mesh) -> None:
         keys = _pair_keys(mesh.elements, mesh.node_count)
         order = np.argsort(keys)  # several times as fast as numpy.unique
         ordered = keys[order]
         is_first = np.diff(ordered, prepend=-1) > 0
         positions = np.empty_like(keys)
         positions[order] = np.cumsum(is_first) - 1
-        return cls(
-            keys=ordered[is_first],
-            size=mesh.node_count,
-            positions_of_elements=positions.reshape(len(mesh.elements), -1),
-        )
+        self.keys, self.size = ordered[is_first], mesh.node_count
+        self.positions_of_elements = positions.reshape(len(mesh.elements), -1)
 
     def positions(self, cells: Integers) -> Integers:
         """Positions in `keys` of the pairs of nodes of some triangles."""

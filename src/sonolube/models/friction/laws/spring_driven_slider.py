@@ -1,6 +1,6 @@
 """Friction-driven oscillation of a slider pulled by a spring over a vibrating surface, by Dahl's or the LuGre law."""
 
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from math import ceil, cos, exp, hypot, pi, sin, sqrt
 
 import numpy as np
@@ -134,14 +134,7 @@ def _constants(law: DahlFriction | LuGreFriction) -> _Constants:
     """F_c, F_s, v_s, stiffness, damping and viscous coefficient of a law."""
     if isinstance(law, DahlFriction):
         return law.coulomb_friction_force, law.coulomb_friction_force, 1.0, law.contact_stiffness, 0.0, 0.0
-    return (
-        law.coulomb_friction_force,
-        law.static_friction_force,
-        law.stribeck_velocity,
-        law.bristle_stiffness,
-        law.bristle_damping,
-        law.viscous_coefficient,
-    )
+    return astuple(law)
 
 
 def _highest_rate(

@@ -44,10 +44,10 @@ class WavinessModel:
         of their components along x, then y.
     section_response : ndarray, shape (functions, blocks)
         Derivatives of the coefficients of the section with respect to the blocks' heights.
-    noise : tuple of float
-        Variances in m2 of the means of unworn and of worn blocks about the model.
     cost : float
         Minus twice the logarithm of the evidence, up to a constant; the smaller, the more probable the model.
+    noise : tuple of float
+        Variances in m2 of the means of unworn and of worn blocks about the model.
     random : bool
         Whether the waves are the posterior mean of a random field rather than a few fitted waves.
 
@@ -65,9 +65,9 @@ class WavinessModel:
     section: Floats
     response: Floats
     section_response: Floats
-    noise: tuple[float, ...]
     cost: float
-    random: bool
+    noise: tuple[float, ...] = ()
+    random: bool = False
 
     def form_alone(self, x: Floats, y: Floats) -> Floats:
         """Heights of the form in m at positions x, shape (1, columns), and y, shape (rows, 1), in m."""

@@ -254,7 +254,7 @@ def _measured(
 ) -> Groove:
     """Groove about a known track, with its intervals."""
     transverse, arc_length = track.curvilinear_coordinates(levelled)
-    errors = GrooveErrors.of(levelled, surface, reference, (transverse, arc_length), section, first_edges, counted)
+    errors = GrooveErrors(levelled, surface, reference, (transverse, arc_length), section, first_edges, counted)
     estimates = section_estimates(errors, first_edges)
     if estimates is None:
         raise NoGroove(

@@ -1,7 +1,6 @@
 """Width, depth and volume of a groove with 95 % intervals, from the covariance of the unworn roughness."""
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -9,12 +8,7 @@ from numpy.typing import NDArray
 from scipy.linalg import toeplitz
 
 from sonolube.checks import Floats
-from sonolube.models.surfaces.grooves.roughness_covariance import (
-    Cells,
-    RoughnessCovariance,
-    coverage_factor,
-    roughness_covariance,
-)
+from sonolube.models.surfaces.grooves.roughness_covariance import Cells, coverage_factor, roughness_covariance
 from sonolube.models.surfaces.grooves.section_curve import section_curve
 from sonolube.models.surfaces.grooves.track import GrooveExtent, MeanCrossSection
 from sonolube.models.surfaces.grooves.unworn_reference import UnwornReference
@@ -40,35 +34,25 @@ class Estimate(NamedTuple):
         return self.value - self.half_width, self.value + self.half_width
 
 
-@dataclass(frozen=True, slots=True, eq=False)
 class GrooveErrors:
     """Random errors of sums over the heights of a levelled scan: roughness within, reference below.
 
+    They are from the scan's unworn pixels and the residual of its groove.
+
     Parameters
     ----------
-    levelled : HeightMap
+    levelled, surface : HeightMap
+        The scan, levelled and as it was.
     reference : UnwornReference
-    transverse, arc_length : ndarray, shape of the heights
-        Coordinates about the track, in m.
+    coordinates : pair of ndarray, shape of the heights
+        Transverse coordinate and arc length about the track, in m.
     section : MeanCrossSection
-    cells : Cells
-    covariance : RoughnessCovariance
-    floor_scale : float
-        Standard deviation of the floor's roughness over that of the unworn surface.
+    edges : GrooveExtent
+    counted : ndarray of bool, shape of the heights
     """
 
-    levelled: HeightMap
-    reference: UnwornReference
-    transverse: Floats
-    arc_length: Floats
-    section: MeanCrossSection
-    cells: Cells
-    covariance: RoughnessCovariance
-    floor_scale: float
-
-    @classmethod
-    def of(
-        cls,
+    def __init__(
+        self,
         levelled: HeightMap,
         surface: HeightMap,
         reference: UnwornReference,
@@ -76,18 +60,16 @@ class GrooveErrors:
         section: MeanCrossSection,
         edges: GrooveExtent,
         counted: Mask,
-    ) -> "GrooveErrors":
-        """Errors of a scan, from its unworn pixels and the residual of its groove."""
-        cells = Cells(levelled)
-        transverse, arc_length = coordinates
-        worn = (transverse > edges.left) & (transverse < edges.right)
-        beside = (transverse < edges.left_foot) | (transverse > edges.right_foot)
-        covariance = roughness_covariance(cells, reference.random_part(surface), counted & beside)
-        residual = np.where(counted, levelled.height - section.at(transverse), 0.0)
-        floor, outer = (_mean_square(cells, residual, counted & part) for part in (worn, beside))
-        scale = math.sqrt(floor / outer) if outer > 0 and floor > 0 else 1.0
-        scale = min(max(scale, _MIN_SCALE), _LARGEST_SCALE)
-        return cls(levelled, reference, transverse, arc_length, section, cells, covariance, scale)
+    ) -> None:
+        self.levelled, self.reference, self.section, self.cells = levelled, reference, section, Cells(levelled)
+        self.transverse, self.arc_length = coordinates
+        worn = (self.transverse > edges.left) & (self.transverse < edges.right)
+        beside = (self.transverse < edges.left_foot) | (self.transverse > edges.right_foot)
+        self.covariance = roughness_covariance(self.cells, reference.random_part(surface), counted & beside)
+        residual = np.where(counted, levelled.height - section.at(self.transverse), 0.0)
+        floor, outer = (_mean_square(self.cells, residual, counted & part) for part in (worn, beside))
+        scale = math.sqrt(floor / outer) if outer > 0 and floor > 0 else 1.0  # of the floor's roughness
+        self.floor_scale = min(max(scale, _MIN_SCALE), _LARGEST_SCALE)
 
     def sum_over(self, worn: Mask, volume: float) -> Estimate:
         """Volume below the reference over worn pixels; a missing one weighs on those of its bin."""

@@ -250,9 +250,7 @@ class PlaneWaveSearch:
             section=linear[self._form_terms :],
             response=response[kept],
             section_response=response[self._form_terms : linear.size],
-            noise=(),
             cost=fit.cost,
-            random=False,
         )
 
 

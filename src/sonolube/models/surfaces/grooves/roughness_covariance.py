@@ -154,26 +154,17 @@ def roughness_covariance(cells: Cells, random_part: Floats, counted: Mask) -> Ro
         covariance = _lags(_density(parameters, shape, cells.cell_sides), shape)
         return np.asarray(fft.hfft(fft.rfft(covariance * overlap, axis=1), shape[0], axis=0).take(used))
 
-    floor = 1e-9 * variance
-    best: tuple[float, Floats, Floats] | None = None
-    for length in (2.0, 8.0):
-        start = np.array(
-            [
-                math.log(variance),
-                math.log(length * math.sqrt(math.prod(cells.cell_sides))),
-                0.0,
-                0.0,
-                math.log(_EXPONENT),
-                math.log(0.05 * variance),
-            ]
-        )
-        found = _scored(start, without_noise, periodogram, weight, floor, math.log(_MIN_NOISE * variance))
-        if best is None or found[0] < best[0]:
-            best = found
-    assert best is not None
+    def scored(length: float) -> tuple[float, Floats, Floats]:
+        """Best fit from a correlation length in cells."""
+        size, reach = math.log(variance), math.log(length * math.sqrt(math.prod(cells.cell_sides)))
+        start = np.array([size, reach, 0.0, 0.0, math.log(_EXPONENT), math.log(0.05 * variance)])
+        limits = 1e-9 * variance, math.log(_MIN_NOISE * variance)
+        return _scored(start, without_noise, periodogram, weight, *limits)
+
+    _, parameters, parameter_covariance = min((scored(length) for length in (2.0, 8.0)), key=lambda found: found[0])
     return RoughnessCovariance(
-        parameters=best[1],
-        parameter_covariance=best[2],
+        parameters=parameters,
+        parameter_covariance=parameter_covariance,
         cell_sides=cells.cell_sides,
         pixels_per_cell=cells.pixels_per_cell,
     )

@@ -66,12 +66,12 @@ def section_curve(
             break
         points = s[inside], z[inside], covariance[np.ix_(inside, inside)]
         mirrored = -points[0][::-1], points[1][::-1], points[2][::-1, ::-1]
-        fit = _Spline.of(*points, _integrated_thrice)
+        fit = _Spline(*points, _integrated_thrice)
         heights = fit.at(points[0])
         depth = -float(heights.min())
         ends = [
-            None if cut[0] else _Edge.of(*points, heights, depth),
-            None if cut[1] else _Edge.of(*mirrored, heights[::-1], depth),
+            None if cut[0] else _Edge(*points, heights, depth),
+            None if cut[1] else _Edge(*mirrored, heights[::-1], depth),
         ]
         fitted = points, heights, ends
         level = -min(_FLANK * depth + noise, depth / 3)
@@ -84,48 +84,36 @@ def section_curve(
     return None if fitted is None else _curve(*fitted)
 
 
-class _Edge(NamedTuple):
-    """Zero of a flank; distances count inwards."""
+class _Edge:
+    """Zero of a flank before the first of the points, by a spline through its own; distances count inwards."""
 
-    flank: "_Spline"
-    outermost: float
-    first: float  # point of the flank
-    last: float
-    secant: float  # slope
-
-    @classmethod
-    def of(cls, s: Floats, z: Floats, covariance: Floats, heights: Floats, depth: float) -> "_Edge":
-        """Edge before the first of the points, by a spline through those of its flank."""
+    def __init__(self, s: Floats, z: Floats, covariance: Floats, heights: Floats, depth: float) -> None:
         deep = np.flatnonzero(heights < -_FLANK_END * depth)
         count = max(min(_MIN_FLANK, s.size), int(deep[0]) + 1 if deep.size else s.size)
-        flank = _Spline.of(s[:count], z[:count], covariance[:count, :count], _integrated_thrice)
-        secant = float(heights[0] - heights[count - 1]) / float(s[count - 1] - s[0])
-        outermost = float(s[0] + heights[0] / (_MIN_SLOPE * secant))
-        return cls(flank, outermost, float(s[0]), float(s[count - 1]), secant)
+        self.flank = _Spline(s[:count], z[:count], covariance[:count, :count], _integrated_thrice)
+        self.first = float(s[0])
+        self.secant = float(heights[0] - heights[count - 1]) / float(s[count - 1] - s[0])
+        self.outwards = np.linspace(s[count - 1], s[0] + heights[0] / (_MIN_SLOPE * self.secant), _FINE)
 
     @property
     def place(self) -> float:
         """Zero of the flank's posterior mean, in m."""
-        return float(self._zeros(self.flank.at(self._outwards)[None])[0])
+        return float(self._zeros(self.flank.at(self.outwards)[None])[0])
 
     def deviation(self) -> float:
         """Standard deviation of the place over draws, in m."""
-        return _deviation(self._zeros(self.flank.draws(self._outwards)))
+        return _deviation(self._zeros(self.flank.draws(self.outwards)))
 
     def slope(self, step: float) -> float:
         """Slope of the flank over two steps in m from its zero, per metre."""
         slope = abs(float(np.diff(self.flank.at(self.place + np.array([0.0, 2 * step])))[0])) / (2 * step)
         return min(max(slope, _MIN_SLOPE * self.secant), _LARGEST_SLOPE * self.secant)
 
-    @property
-    def _outwards(self) -> Floats:
-        return np.linspace(self.last, self.outermost, _FINE)
-
     def _zeros(self, curves: Floats) -> Floats:
         """Zero of each curve along the flank outwards."""
-        outwards = self._outwards
+        outwards = self.outwards
         places = _crossing(outwards, curves)
-        lost = places <= self.outermost  # a parabola that turns back: its tangent at the last point instead
+        lost = places <= outwards[-1]  # a parabola that turns back: its tangent at the last point instead
         at_end = np.array([np.interp(self.first, outwards[::-1], curve[::-1]) for curve in curves[lost]])
         places[lost] = self.first + at_end / self.secant
         return places
@@ -138,7 +126,7 @@ def _floor(s: Floats, z: Floats, covariance: Floats, heights: Floats, depth: flo
     first = max(0, min(int(deep[0]), middle - _MIN_FLANK // 2))
     last = min(s.size, max(int(deep[-1]) + 1, middle + _MIN_FLANK // 2))
     part = slice(first, last)
-    spline = _Spline.of(s[part], z[part], covariance[part, part], _integrated_twice)
+    spline = _Spline(s[part], z[part], covariance[part, part], _integrated_twice)
     return spline, np.linspace(s[first], s[last - 1], _FINE)
 
 
@@ -170,36 +158,22 @@ def _curve(points: tuple[Floats, Floats, Floats], heights: Floats, ends: Sequenc
     )
 
 
-class _Spline(NamedTuple):
-    """Posterior of a smoothing spline with a free parabola."""
+class _Spline:
+    """Posterior of a smoothing spline with a free parabola, through points with correlated errors."""
 
-    middle: float
-    scale: float
-    points: Floats
-    inverse: tuple[Floats, bool]  # Cholesky factor of noise and prior
-    kernel: "_Kernel"
-    line: Floats  # of the points, (n, 3)
-    line_covariance: Floats
-    coefficients: Floats
-    weights: Floats
-    power: float
-
-    @classmethod
-    def of(cls, s: Floats, z: Floats, covariance: Floats, kernel: "_Kernel") -> "_Spline":
-        """Spline through points with correlated errors."""
-        middle, scale = float(s[0]), float(np.ptp(s)) / 2
-        u = (s - middle) / scale
-        line = _parabolas(u)
+    def __init__(self, s: Floats, z: Floats, covariance: Floats, kernel: _Kernel) -> None:
+        self.middle, self.scale, self.kernel = float(s[0]), float(np.ptp(s)) / 2, kernel
+        self.points = (s - self.middle) / self.scale
+        self.line = _parabolas(self.points)
         variance = float(np.mean(np.diag(covariance)))
-        noise = covariance + _JITTER * variance * np.eye(u.size)
-        prior = kernel(u, u)
-        power = _most_likely_power(noise, prior, line, z, variance)
-        factor = cho_factor(noise + power * prior, lower=True)
-        solved = cho_solve(factor, line)
-        line_covariance = np.linalg.inv(line.T @ solved)
-        coefficients = line_covariance @ (solved.T @ z)
-        weights = cho_solve(factor, z - line @ coefficients)
-        return cls(middle, scale, u, factor, kernel, line, line_covariance, coefficients, weights, power)
+        noise = covariance + _JITTER * variance * np.eye(s.size)
+        prior = kernel(self.points, self.points)
+        self.power = _most_likely_power(noise, prior, self.line, z, variance)
+        self.inverse = cho_factor(noise + self.power * prior, lower=True)
+        solved = cho_solve(self.inverse, self.line)
+        self.line_covariance = np.linalg.inv(self.line.T @ solved)
+        self.coefficients = self.line_covariance @ (solved.T @ z)
+        self.weights = cho_solve(self.inverse, z - self.line @ self.coefficients)
 
     def at(self, s: Floats) -> Floats:
         """Posterior mean of the heights in m at distances in m."""

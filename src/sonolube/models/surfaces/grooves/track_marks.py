@@ -167,18 +167,13 @@ def _longitudinal_profiles(groove: Groove, width_fraction: float, averaged_point
 def _background(k: Floats, power: Floats, beside: NDArray[np.bool_], length: float) -> Floats:
     """Power law with a roll-off fitted at some wavenumbers in double logarithmic scale."""
     y = np.log(np.maximum(power, power.max() * 1e-12))
-    weight = np.ones(k.size)[beside]
-    best: tuple[float, Floats] | None = None
-    for roll_off in np.geomspace(1 / length, 1 / k[-1], _ROLL_OFFS):
-        falling = np.log1p((2 * math.pi * roll_off * k) ** 2)
-        design = np.stack([np.ones(k.size), falling], axis=1)
-        fitted = np.linalg.lstsq(design[beside] * weight[:, None], y[beside] * weight, rcond=None)[0]
-        model = design @ fitted
-        misfit = float(np.sum(np.square((y - model)[beside] * weight)))
-        if best is None or misfit < best[0]:
-            best = misfit, model
-    assert best is not None
-    return np.asarray(np.exp(best[1]))
+
+    def fitted(roll_off: float) -> Floats:
+        design = np.stack([np.ones(k.size), np.log1p((2 * math.pi * roll_off * k) ** 2)], axis=1)
+        return np.asarray(design @ np.linalg.lstsq(design[beside], y[beside], rcond=None)[0])
+
+    models = [fitted(roll_off) for roll_off in np.geomspace(1 / length, 1 / k[-1], _ROLL_OFFS)]
+    return np.asarray(np.exp(min(models, key=lambda model: float(np.sum(np.square((y - model)[beside]))))))
 
 
 def _false_alarm(k: Floats, ratio: Floats, spectra: Floats, top: int, length: float) -> float:

@@ -5,7 +5,6 @@ Waviness of many waves is a Gaussian random field, its spectrum estimated by emp
 
 import math
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotri
@@ -44,7 +43,7 @@ def fit_random_field(blocks: BlockAverages) -> WavinessModel:
     count, free = len(modes), 3 + blocks.section.shape[1]
     form = blocks.form(6)
     design = np.concatenate([form[:, :3], blocks.section, form[:, 3:], *blocks.fourier_waves], axis=1)
-    parts = [_Part.of(blocks, design, part) for part in blocks.parts]
+    parts = [_Part(blocks, design, part) for part in blocks.parts]
     wavenumber = np.hypot(*modes.T)
     ring = np.minimum((wavenumber / wavenumber.max() * _RINGS).astype(np.intp), _RINGS - 1)
     rings = np.concatenate([np.full(3, _RINGS), ring, ring])  # the square terms of the form are free
@@ -71,7 +70,8 @@ def fit_random_field(blocks: BlockAverages) -> WavinessModel:
         if np.all(np.abs(np.log(density / previous))[previous > _NEGLIGIBLE_VARIANCE * noise[0]] < _CONVERGED):
             break
     misfit = sum(part.residual_sum(mean) / variance for part, variance in zip(parts, used_noise, strict=True))
-    cost = _log_noise(parts, used_noise) + misfit + float(mean[free:] ** 2 @ prior - np.sum(np.log(prior)))
+    noises = sum(part.blocks * math.log(variance) for part, variance in zip(parts, used_noise, strict=True))
+    cost = float(noises) + misfit + float(mean[free:] ** 2 @ prior - np.sum(np.log(prior)))
     cost += float(np.linalg.slogdet(precision)[1] - np.linalg.slogdet(precision[:free, :free])[1])
     kept = np.concatenate([np.arange(3), bound])
     response = covariance @ (design * (blocks.weight / blocks.per_part(used_noise))[:, None]).T
@@ -90,20 +90,14 @@ def fit_random_field(blocks: BlockAverages) -> WavinessModel:
     )
 
 
-class _Part(NamedTuple):
+class _Part:
     """Normal equations of the unworn or the worn blocks for unit noise."""
 
-    gram: Floats
-    moment: Floats
-    square: float
-    blocks: int
-
-    @classmethod
-    def of(cls, blocks: BlockAverages, design: Floats, part: slice) -> "_Part":
-        """Normal equations of a slice of the blocks."""
+    def __init__(self, blocks: BlockAverages, design: Floats, part: slice) -> None:
         weighted = blocks.weight[part, None] * design[part]
         z = blocks.mean_height[part]
-        return cls(design[part].T @ weighted, weighted.T @ z, float(blocks.weight[part] @ z**2), z.size)
+        self.gram, self.moment = design[part].T @ weighted, weighted.T @ z
+        self.square, self.blocks = float(blocks.weight[part] @ z**2), z.size
 
     def residual_sum(self, mean: Floats) -> float:
         """Weighted residual sum of squares for given coefficients."""
@@ -124,11 +118,6 @@ def _inverse(precision: Floats) -> Floats:
     inverse = lower + lower.T  # the upper part of either factor is zero
     np.fill_diagonal(inverse, np.diag(lower))
     return np.asarray(inverse)
-
-
-def _log_noise(parts: list[_Part], noise: Floats) -> float:
-    """Sum of the logarithms of the noise variances over all blocks."""
-    return float(sum(part.blocks * math.log(variance) for part, variance in zip(parts, noise, strict=True)))
 
 
 _FORM_TERMS = 6  # a curvature that roughness hides is still there below the groove
