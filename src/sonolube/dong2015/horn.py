@@ -1,4 +1,4 @@
-"""Poisson horn of D 2.1 on an ultrasonic transducer: a quarter of it, symmetric about the middles of its faces.
+"""Poisson horn of D 2.1 on an ultrasonic transducer: a quarter of it, symmetric, with its table of sourced sizes.
 
 D prints the three sizes of the horn and the frequency and amplitude of the welder (Dukane 220) that drives it. The
 taper and the solids of the horn are those with which it has the printed frequencies of its first axial mode; the
@@ -6,18 +6,48 @@ transducer is a bolted stack between two steel cylinders, of common sizes, as lo
 the welder. Block and pads press on opposite faces, so that bending is left out.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
+from functools import wraps
+from inspect import Parameter, signature
 from types import MappingProxyType
 from typing import Any, Final
 
-from sonolube.dong2015.sizes import sized
 from sonolube.errors import UnknownName
 from sonolube.models.fem.mesh.geometry import MILLIMETRE, Geometry, cad_kernel, single_body
 from sonolube.models.fem.parts.bodies import extruded_polygon
 from sonolube.models.fem.parts.transducers import SourcedDimension, Transducer, stack_bodies, stack_from_bodies
 from sonolube.models.fem.solver.model import FixedSupport, Medium, isotropic_medium
 from sonolube.models.fem.solver.reduction import Output
+
+
+def sized(dimensions: Iterable[SourcedDimension]) -> Callable[[Callable[..., Transducer]], Callable[..., Transducer]]:
+    """Decorator of a function of a mapping of sizes: it then takes each size as a keyword, by default that of a table.
+
+    The sizes stand in the signature in the order of the table, before the keywords with defaults of the function.
+    """
+    defaults = {each.name: each.value for each in dimensions}
+
+    def decorated(body: Callable[..., Transducer]) -> Callable[..., Transducer]:
+        bare = signature(body)
+        own = list(bare.parameters.values())[1:]
+        sizes = [
+            Parameter(name, Parameter.KEYWORD_ONLY, default=value, annotation=float) for name, value in defaults.items()
+        ]
+        required = [each for each in own if each.default is each.empty]
+        whole = bare.replace(parameters=[*required, *sizes, *(each for each in own if each not in required)])
+
+        @wraps(body)
+        def made(**given: Any) -> Transducer:
+            whole.bind(**given)  # refuses what is no size
+            others = {name: value for name, value in given.items() if name not in defaults}
+            return body({name: given.get(name, value) for name, value in defaults.items()}, **others)
+
+        made.__signature__ = whole  # type: ignore[attr-defined]
+        return made
+
+    return decorated
+
 
 _FAR: Final = 1e3  # mm, beyond any horn
 _PAD: Final = 5e-3  # m, half the edge of the patch that the block touches, 1 cm2 in the rigs

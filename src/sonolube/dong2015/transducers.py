@@ -15,8 +15,7 @@ from typing import Any, Final
 
 from sonolube.dong2015.collar import COLLAR_DIMENSION_SOURCES, FINAL_COLLAR, collar_geometry, dimension_names
 from sonolube.dong2015.collar_analysis import collar_media
-from sonolube.dong2015.horn import poisson_horn
-from sonolube.dong2015.sizes import sized
+from sonolube.dong2015.horn import poisson_horn, sized
 from sonolube.models.fem.mesh.geometry import Geometry, bond, cad_kernel, single_body
 from sonolube.models.fem.parts.bodies import acorn_nut, hub_disc
 from sonolube.models.fem.parts.transducers import (

@@ -19,8 +19,8 @@ from .devices import (
 )
 from .interlocks import Interlock as Interlock, Trip as Trip, first_trip as first_trip, interlocks_for as interlocks_for
 from .own_clocks import OwnClocks as OwnClocks
+from .run_plan import impossibilities as impossibilities, require_possible as require_possible
 from .runner import RunResult as RunResult, run_protocol as run_protocol
-from .set_points import impossibilities as impossibilities, require_possible as require_possible
 from .states import (
     OUTCOMES as OUTCOMES,
     TRANSITIONS as TRANSITIONS,

@@ -12,7 +12,7 @@ from sonolube.laboratory.block import BLOCK_DURATION
 from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting, Recorder
 from sonolube.laboratory.interlocks import drive_sampling, idle_rate, interlocks_for
 from sonolube.laboratory.own_clocks import OwnClocks, StandingRig, off_bounds
-from sonolube.laboratory.set_points import (
+from sonolube.laboratory.run_plan import (
     SETTLING,
     SPEED_CHANNEL,
     SPEEDS,

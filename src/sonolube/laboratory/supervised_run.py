@@ -24,7 +24,7 @@ from sonolube.laboratory.devices import (
 )
 from sonolube.laboratory.interlocks import Interlock, Trip, first_trip, set_point_trip
 from sonolube.laboratory.own_clocks import OwnClocks
-from sonolube.laboratory.reservation import reserved
+from sonolube.laboratory.run_plan import reserved
 from sonolube.laboratory.states import (
     Event,
     RunControl,

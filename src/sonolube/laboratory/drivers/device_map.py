@@ -21,8 +21,7 @@ from sonolube.laboratory.devices import DeviceError, Devices
 from sonolube.laboratory.drivers.daqmx_library import DRIVER_REMEDY, daqmx_errors, daqmx_library
 from sonolube.laboratory.drivers.driver_table import MapEntries
 from sonolube.laboratory.drivers.entry import AcquisitionEntry, DriverEntry
-from sonolube.laboratory.reservation import reserved
-from sonolube.laboratory.set_points import highest_of_steps, impossibilities
+from sonolube.laboratory.run_plan import highest_of_steps, impossibilities, reserved
 from sonolube.text.toml_text import text_of, toml_content
 from sonolube.text.units import format_si
 

@@ -13,7 +13,7 @@ import numpy as np
 from sonolube.checks import Floats, require_positive
 from sonolube.facts.protocol import Protocol, SetPoint
 from sonolube.laboratory.heating_assumptions import HeatingAssumptions, capacitive_load
-from sonolube.laboratory.set_points import drive_setting
+from sonolube.laboratory.run_plan import drive_setting
 from sonolube.models.actuator import linear_amplifier_power
 from sonolube.models.thermal import EllipticSource, HeatedContact, ThermalNetwork, ThermalSolid
 from sonolube.models.thermal.bulk import network_rise

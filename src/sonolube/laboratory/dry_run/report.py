@@ -15,7 +15,7 @@ from sonolube.design.control import Amplifier
 from sonolube.facts.protocol import Check, step_at
 from sonolube.laboratory.dry_run.record import DryRun, PlannedPoint
 from sonolube.laboratory.interlocks import drive_sampling, recorded_channels
-from sonolube.laboratory.set_points import SPEED_CHANNEL, speed_checks
+from sonolube.laboratory.run_plan import SPEED_CHANNEL, speed_checks
 from sonolube.text.units import format_si
 
 STATIC_FRICTION_FACTOR = 1.35

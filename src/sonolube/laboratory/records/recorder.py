@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 from sonolube.errors import InvalidInput
 from sonolube.laboratory.block import Block, Channel
 from sonolube.laboratory.records.documents import EXIT_STATUS, DocumentLog, read_documents
-from sonolube.laboratory.records.open_part import OpenPart, RunClock
 from sonolube.laboratory.records.raw_blocks import PartClock, RawPart, raw_header
 from sonolube.laboratory.records.recorded_part import recorded_part
 from sonolube.laboratory.records.recording_files import write_netcdf_recording
+from sonolube.laboratory.records.recovery import OpenPart, RunClock
 from sonolube.laboratory.records.run import RunSummary, run_summary
 from sonolube.laboratory.records.run_folder import (
     CLOCK_NAME,

@@ -17,8 +17,7 @@ from sonolube.laboratory.devices import Devices
 from sonolube.laboratory.drivers.device_map import ready_devices
 from sonolube.laboratory.dry_run import DryRun, dry_run_chart
 from sonolube.laboratory.records import Run, export_run, read_run
-from sonolube.laboratory.reservation import require_free
-from sonolube.laboratory.run_plan import RunPlan, begin_record
+from sonolube.laboratory.run_plan import RunPlan, begin_record, require_free
 from sonolube.laboratory.runner import Operator
 from sonolube.laboratory.virtual_tribometer import GROOVE_DIAMETER, VirtualTribometer, virtual_tribometer
 from sonolube.report import Drawing

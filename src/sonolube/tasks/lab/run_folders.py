@@ -143,7 +143,7 @@ class ShownRun(Answer):
         """Channels over time."""
         if not self.run.recordings:
             return {}
-        from sonolube.laboratory.records.recording_views import channels_chart
+        from sonolube.laboratory.records.recorded_part import channels_chart
         from sonolube.report import Drawing
 
         title = self.run.summary.title
