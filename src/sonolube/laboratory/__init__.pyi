@@ -24,12 +24,10 @@ from .runner import RunResult as RunResult, run_protocol as run_protocol
 from .states import (
     OUTCOMES as OUTCOMES,
     TRANSITIONS as TRANSITIONS,
-    Action as Action,
     Event as Event,
     RunControl as RunControl,
     RunState as RunState,
     State as State,
-    Transition as Transition,
     after as after,
 )
 from .supervised_run import Sampling as Sampling

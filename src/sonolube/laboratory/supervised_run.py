@@ -250,7 +250,7 @@ class SupervisedRun(ABC):
 
     def _happens(self, event: Event, reason: str = "") -> None:
         """Change the state of the run by an event, and note it."""
-        self._present, _ = after(self._present, event, reason=reason)
+        self._present = after(self._present, event, reason=reason)
         if event is not Event.START:
             self._note(event.value, reason=reason, state=self._present.state.value)
 
