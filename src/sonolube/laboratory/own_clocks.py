@@ -310,9 +310,8 @@ class _Reader:
                 )
                 self._is_begun = True
             values = block.values[:, columns]
-            recorder.append_beside(
-                self.clock, Block(first_sample=block.first_sample, sample_rate=self._rate, values=values)
-            )
+            kept = Block(first_sample=block.first_sample, sample_rate=self._rate, values=values)
+            recorder.append(kept, clock=self.clock)
 
     def end_recording(self, recorder: Recorder) -> None:
         """Record no more; that nothing was recorded is noted."""
@@ -321,7 +320,7 @@ class _Reader:
         self.record([])
         if self._is_begun:
             self._is_begun = False
-            recorder.end_beside(self.clock)
+            recorder.end(clock=self.clock)
 
     def mean(self, channel: str) -> float | None:
         """Mean of a channel over the latest block."""
