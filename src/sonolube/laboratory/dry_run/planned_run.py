@@ -26,7 +26,6 @@ from sonolube.laboratory.dry_run.record import (
     DryRun,
     Heating,
     PlannedPoint,
-    PlannedRecording,
     drive_load,
     heating_over,
     rubbed_contact,
@@ -90,7 +89,6 @@ def dry_run(
         protocol=protocol,
         rig_title="" if rig is None else rig.title,
         points=points,
-        recordings=_recordings(settings),
         duration=settings[-1].time,
         prompt_time=sum(PROMPT_DURATIONS[prompt.task] for prompt in prompts),
         heating=heated,
@@ -136,21 +134,6 @@ def _sliding_speed(point: SetPoint, metadata: Metadata) -> float | None:
     if point.rotation_speed == 0:
         return 0.0
     return None if metadata.groove_diameter is None else pi * metadata.groove_diameter * point.rotation_speed
-
-
-def _recordings(settings: Sequence[SetPoint]) -> tuple[PlannedRecording, ...]:
-    """Recordings in the order of time."""
-    return tuple(
-        PlannedRecording(
-            step=point.step,
-            start=point.time,
-            duration=(point.recorded_until or point.time) - point.time,
-            sample_rate=point.sample_rate or 0.0,
-            channels=point.channels,
-        )
-        for point in settings
-        if point.kind == "acquire"
-    )
 
 
 def _with_vibration(

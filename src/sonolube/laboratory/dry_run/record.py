@@ -157,34 +157,10 @@ class PlannedPoint:
     friction_force: float | None = None
     load: DriveLoad | None = None
 
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class PlannedRecording:
-    """Recording of a protocol.
-
-    Parameters
-    ----------
-    step : str
-        Place of its step.
-    start : float
-        Time at which it starts, in s.
-    duration : float
-        [s]
-    sample_rate : float
-        Of each channel. [Hz]
-    channels : tuple of str
-    """
-
-    step: str
-    start: float
-    duration: float
-    sample_rate: float
-    channels: tuple[str, ...]
-
     @property
-    def samples(self) -> int:
-        """Number of samples of all channels."""
-        return round(self.duration * self.sample_rate) * len(self.channels)
+    def recorded(self) -> float:
+        """Time that is recorded from here on. [s]"""
+        return (self.setting.recorded_until or self.setting.time) - self.setting.time
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -198,7 +174,6 @@ class DryRun:
         Empty without a rig.
     points : tuple of PlannedPoint
         One a set point, the end included.
-    recordings : tuple of PlannedRecording
     duration : float
         Time without prompts. [s]
     prompt_time : float
@@ -215,7 +190,6 @@ class DryRun:
     protocol: Protocol
     rig_title: str
     points: tuple[PlannedPoint, ...]
-    recordings: tuple[PlannedRecording, ...]
     duration: float
     prompt_time: float
     heating: Heating | None = None
@@ -224,9 +198,15 @@ class DryRun:
     assumptions: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
 
     @property
+    def recordings(self) -> list[PlannedPoint]:
+        """Points at which a recording begins."""
+        return [point for point in self.points if point.setting.kind == "acquire"]
+
+    @property
     def samples(self) -> int:
         """Number of samples of all recordings and channels."""
-        return sum(recording.samples for recording in self.recordings)
+        begins = ((point.recorded, point.setting) for point in self.recordings)
+        return sum(round(lasts * (at.sample_rate or 0.0)) * len(at.channels) for lasts, at in begins)
 
     @property
     def bytes(self) -> int:

@@ -198,8 +198,7 @@ def _facts(point: PlannedPoint) -> Iterator[str]:
     if point.friction_force:
         yield format_si(point.friction_force, "N", digits=3)
     if at.channels and at.kind == "acquire" and at.sample_rate is not None:
-        lasts = (at.recorded_until or at.time) - at.time
-        yield f"{', '.join(at.channels)} at {format_si(at.sample_rate, 'Hz')} for {clock(lasts)}"
+        yield f"{', '.join(at.channels)} at {format_si(at.sample_rate, 'Hz')} for {clock(point.recorded)}"
     if point.content:
         yield point.content
 
@@ -269,7 +268,7 @@ def dry_run_chart(found: DryRun) -> Chart:
         is_first = not panels
         marks: list[Part] = []
         if is_first and found.recordings:
-            start, lasts = (np.array([getattr(each, of) for each in found.recordings]) for of in ("start", "duration"))
+            start, lasts = np.array([(each.setting.time, each.recorded) for each in found.recordings]).T
             marks.append(
                 Zone(first=start / scale, last=(start + lasts) / scale, label="recorded", colour=2, opacity=0.25)
             )
