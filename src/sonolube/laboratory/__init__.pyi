@@ -17,7 +17,7 @@ from .devices import (
     connect_devices as connect_devices,
     switch_outputs_off as switch_outputs_off,
 )
-from .interlocks import Interlock as Interlock, Trip as Trip, first_trip as first_trip, interlocks_for as interlocks_for
+from .interlocks import Interlock as Interlock, first_trip as first_trip, interlocks_for as interlocks_for
 from .own_clocks import OwnClocks as OwnClocks
 from .run_plan import impossibilities as impossibilities, require_possible as require_possible
 from .runner import RunResult as RunResult, run_protocol as run_protocol

@@ -10,7 +10,7 @@ from typing import Final
 from sonolube.facts.protocol import Check, Prompt, Protocol, SetPoint, flattened, step_at
 from sonolube.laboratory.block import BLOCK_DURATION
 from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting, Recorder
-from sonolube.laboratory.interlocks import drive_sampling, idle_rate, interlocks_for
+from sonolube.laboratory.interlocks import drive_sampling, idle_rate, interlocks_for, set_point_trip
 from sonolube.laboratory.own_clocks import OwnClocks, StandingRig, off_bounds
 from sonolube.laboratory.run_plan import (
     SETTLING,
@@ -199,7 +199,7 @@ class _Run(SupervisedRun):
             if setting is None:
                 self._devices.drive.off()
             else:
-                self._require_within(setting, self._protocol.limits)
+                self._end_at(set_point_trip(setting, self._protocol.limits))
                 self._devices.drive.drive(setting)
             self._drive = setting
             frequency = 0.0 if setting is None else setting.frequency

@@ -12,7 +12,7 @@ from sonolube.design.control import initial_state, next_level
 from sonolube.errors import InvalidInput
 from sonolube.laboratory.closed_loop.plan import FrictionHold, HeldFriction, recorded_channels
 from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting, Recorder
-from sonolube.laboratory.interlocks import interlocks_for
+from sonolube.laboratory.interlocks import interlocks_for, set_point_trip
 from sonolube.laboratory.own_clocks import OwnClocks
 from sonolube.laboratory.states import Event, RunControl, RunEnded, State
 from sonolube.laboratory.supervised_run import Advance, Sampling, SupervisedRun
@@ -148,7 +148,7 @@ class _Loop(SupervisedRun):
             voltage_offset=self._hold.offset_ratio * voltage,
             frequency=self._hold.frequency,
         )
-        self._require_within(setting, self._hold.limits)
+        self._end_at(set_point_trip(setting, self._hold.limits))
         self._devices.drive.drive(setting)
 
     def _measure(self) -> tuple[float, float]:
