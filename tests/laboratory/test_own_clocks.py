@@ -21,7 +21,7 @@ from sonolube.laboratory import (
     DeviceLost,
     Devices,
     RunControl,
-    RunResult,
+    RunState,
     State,
     impossibilities,
     own_clocks,
@@ -143,7 +143,7 @@ def release() -> Iterator[Event]:
     event.set()
 
 
-def run(slow: Inputs, read: Protocol | None = None, rig: SimulatedRig | None = None) -> tuple[RunResult, SimulatedRig]:
+def run(slow: Inputs, read: Protocol | None = None, rig: SimulatedRig | None = None) -> tuple[RunState, SimulatedRig]:
     rig, record = rig or PacedRig(), MemoryRecord()
     result = run_protocol(read or protocol(), devices(rig, slow), record, operator=lambda _: True)
     assert (record.outcome, record.reason) == (result.outcome, result.reason)

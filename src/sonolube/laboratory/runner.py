@@ -1,7 +1,6 @@
 """Runner: a protocol on the devices of a rig, recorded block by block; however it ends, motor and drive are off."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from itertools import pairwise
 from math import pi
 from threading import Event as Signal
@@ -24,7 +23,7 @@ from sonolube.laboratory.run_plan import (
     speed_checks,
     speed_of,
 )
-from sonolube.laboratory.states import Event, RunControl, RunEnded, State
+from sonolube.laboratory.states import Event, RunControl, RunEnded, RunState
 from sonolube.laboratory.supervised_run import Advance, Sampling, SupervisedRun
 from sonolube.storage.interruption import asked_by_signal, undone_at_signal
 from sonolube.text.units import format_si
@@ -35,25 +34,6 @@ Operator = Callable[[Prompt], bool]
 """Shows a prompt, and returns whether the operator has confirmed it; False ends the run."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class RunResult:
-    """Outcome of a run.
-
-    Parameters
-    ----------
-    state : State
-        SAFE, or FAILED where motor or drive may be on.
-    outcome : str
-        completed, stopped or failed.
-    reason : str
-        Why it ended before its protocol.
-    """
-
-    state: State
-    outcome: str
-    reason: str
-
-
 def run_protocol(
     protocol: Protocol,
     devices: Devices,
@@ -62,7 +42,7 @@ def run_protocol(
     operator: Operator,
     control: RunControl | None = None,
     advance: Advance | None = None,
-) -> RunResult:
+) -> RunState:
     """Run a protocol on devices and record it.
 
     Parameters
@@ -81,8 +61,9 @@ def run_protocol(
 
     Returns
     -------
-    RunResult
-        Also where a device, a limit, the disk or the operator has ended the run.
+    RunState
+        SAFE, or FAILED where motor or drive may be on; also where a device, a limit, the disk or the operator has ended
+        the run.
 
     Raises
     ------
@@ -123,11 +104,10 @@ class _Run(SupervisedRun):
         self._turns = 0.0
         self._conditions: dict[str, float | str] = {"lubricant": ""}
 
-    def complete(self, advance: Advance | None) -> RunResult:
+    def complete(self, advance: Advance | None) -> RunState:
         """Follow the protocol to its end, whatever that is."""
         self._complete(advance)
-        present = self._present
-        return RunResult(state=present.state, outcome=present.outcome, reason=present.reason)
+        return self._present
 
     def _follow(self, advance: Advance | None) -> None:
         """Reach one set point after the other."""

@@ -85,9 +85,9 @@ class RunState:
     ----------
     state : State
     outcome : str
-        Of the first event that ended the run; empty before.
+        completed, stopped or failed, by the first event that ended the run; empty before.
     reason : str
-        Why it ended.
+        Why it ended before its protocol.
     """
 
     state: State = State.IDLE
