@@ -78,13 +78,6 @@ class CheckedValue:
         return f"check of {check.quantity}: {format_si(self.value, unit_of(check.quantity))}{basis}, wanted {bounds}"
 
 
-def speed_of(check: Check, *, rotation_speed: float, groove_diameter: float, is_set: bool) -> CheckedValue:
-    """Speed that is checked, by that of the disc."""
-    slides = check.quantity == "sliding_speed"
-    value = rotation_speed * pi * groove_diameter if slides else rotation_speed
-    return CheckedValue(check=check, value=value, is_set=is_set)
-
-
 def speed_checks(protocol: Protocol) -> tuple[str, ...]:
     """Steps that check a speed; each place once."""
     checks = {point.step: step_at(protocol, point.step) for point in flattened(protocol) if point.kind == "check"}

@@ -21,7 +21,6 @@ from sonolube.laboratory.run_plan import (
     require_possible,
     rotation_speed,
     speed_checks,
-    speed_of,
 )
 from sonolube.laboratory.states import Event, RunControl, RunEnded, RunState
 from sonolube.laboratory.supervised_run import Advance, Sampling, SupervisedRun
@@ -273,14 +272,15 @@ class _Run(SupervisedRun):
 
     def _checked(self, check: Check) -> CheckedValue:
         """Value of a checked quantity, as measured; of a speed that nothing measures, as it is set."""
-        is_speed, measures_speed = check.quantity in SPEEDS, SPEED_CHANNEL in self._devices.channels
-        if is_speed and not measures_speed:
-            return speed_of(check, rotation_speed=self._turns, groove_diameter=self._diameter, is_set=True)
-        value, trip = self._sampling.measure(SPEED_CHANNEL if is_speed else check.quantity)
-        self._end_at(trip)
-        if is_speed and value is not None:
-            return speed_of(check, rotation_speed=value, groove_diameter=self._diameter, is_set=False)
-        return CheckedValue(check=check, value=value)
+        is_speed = check.quantity in SPEEDS
+        is_set = is_speed and SPEED_CHANNEL not in self._devices.channels
+        value: float | None = self._turns
+        if not is_set:
+            value, trip = self._sampling.measure(SPEED_CHANNEL if is_speed else check.quantity)
+            self._end_at(trip)
+        if check.quantity == "sliding_speed" and value is not None:
+            value = value * pi * self._diameter
+        return CheckedValue(check=check, value=value, is_set=is_set)
 
     def _doing(self) -> str:
         """Line of progress, with friction and temperature where they are measured."""

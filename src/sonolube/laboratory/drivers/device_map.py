@@ -52,11 +52,6 @@ class DeviceMap:
         """Optional parts of the installation that it needs, as in `EXTRAS`."""
         return tuple(sorted({extra for part in self.entries.parts for extra in part.extras}))
 
-    @property
-    def frequency_maximum(self) -> float:
-        """Of the drive. [Hz]"""
-        return self.entries.drive.highest_frequency
-
     def devices(self) -> Devices:
         """Devices of the rig; nothing is connected yet.
 
@@ -257,7 +252,7 @@ def unfulfilled(device_map: DeviceMap, protocol: Protocol) -> tuple[str, ...]:
 
 def _beyond(device_map: DeviceMap, points: Sequence[SetPoint]) -> Iterator[tuple[str, str, float, str]]:
     """Step, kind, value and text of frequencies and sample rates beyond the devices of a map."""
-    highest = device_map.frequency_maximum
+    highest = device_map.entries.drive.highest_frequency
     further = device_map.entries.acquisitions.values()
     beside = {each.name for entry in further for each in entry.channel_entries}
     total = device_map.entries.acquisition.total_rate_maximum

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cache, partial
 from itertools import pairwise
 from math import isnan, pi
 
@@ -20,18 +21,10 @@ from sonolube.facts.protocol import (
     flattened,
     step_at,
 )
-from sonolube.laboratory.dry_run.record import (
-    OFF,
-    DriveLoad,
-    DryRun,
-    Heating,
-    PlannedPoint,
-    drive_load,
-    heating_over,
-    rubbed_contact,
-)
+from sonolube.laboratory.dry_run.record import DryRun, Heating, PlannedPoint, drive_load, heating_over, rubbed_contact
 from sonolube.laboratory.dry_run.report import caveats_of, refusals_of
 from sonolube.laboratory.heating_assumptions import HeatingAssumptions as HeatingAssumptions
+from sonolube.laboratory.run_plan import drive_setting
 from sonolube.laboratory.supervision import LATE
 from sonolube.rig import OperatingPoints, Rig, operating_points, thermal_solid
 from sonolube.rig.driven_rig import actuator_capacitance
@@ -200,15 +193,8 @@ def _with_loads(points: Sequence[PlannedPoint], capacitance: float | None, notes
     if capacitance is None:
         notes.caveats.append("actuator.capacitance is missing in the rig file: current, power and heat are left out")
         return tuple(points)
-    known: dict[tuple[object, ...], DriveLoad] = {}
-    loaded = []
-    for point in points:
-        at = point.setting
-        key = (at.voltage_peak_to_peak, at.voltage_offset, at.frequency, at.waveform)
-        if key not in known:
-            known[key] = OFF if at.frequency is None else drive_load(at, capacitance=capacitance)
-        loaded.append(replace(point, load=known[key]))
-    return tuple(loaded)
+    load_of = cache(partial(drive_load, capacitance=capacitance))
+    return tuple(replace(point, load=load_of(drive_setting(point.setting))) for point in points)
 
 
 def _heating(

@@ -12,8 +12,8 @@ import numpy as np
 
 from sonolube.checks import Floats, require_positive
 from sonolube.facts.protocol import Protocol, SetPoint
+from sonolube.laboratory.devices import DriveSetting
 from sonolube.laboratory.heating_assumptions import HeatingAssumptions, capacitive_load
-from sonolube.laboratory.run_plan import drive_setting
 from sonolube.models.actuator import linear_amplifier_power
 from sonolube.models.thermal import EllipticSource, HeatedContact, ThermalNetwork, ThermalSolid
 from sonolube.models.thermal.bulk import network_rise
@@ -42,16 +42,13 @@ class DriveLoad:
     capacitive_power: float
 
 
-OFF = DriveLoad(peak_current=0.0, slew_rate=0.0, actuator_power=0.0, capacitive_power=0.0)
-"""Load of a drive that is off."""
-
-
-def drive_load(point: SetPoint, *, capacitance: float) -> DriveLoad:
-    r"""Load of a set point on the amplifier.
+def drive_load(setting: DriveSetting | None, *, capacitance: float) -> DriveLoad:
+    r"""Load of a drive setting on the amplifier.
 
     Parameters
     ----------
-    point : SetPoint
+    setting : DriveSetting or None
+        None for off.
     capacitance : float
         Capacitance of the actuator. [F]
 
@@ -76,13 +73,12 @@ def drive_load(point: SetPoint, *, capacitance: float) -> DriveLoad:
     The current of the motion, largest at resonance, comes on top.
     """
     require_positive(capacitance=capacitance)
-    setting = drive_setting(point)
     if setting is None:
-        return OFF
+        return DriveLoad(peak_current=0.0, slew_rate=0.0, actuator_power=0.0, capacitive_power=0.0)
     need = capacitive_load(setting, capacitance=capacitance)
     power = linear_amplifier_power(
         capacitance=capacitance,
-        voltage_maximum=point.voltage_maximum,
+        voltage_maximum=setting.voltage_maximum,
         voltage_peak_to_peak=setting.voltage_peak_to_peak,
         frequency=setting.frequency,
     )
