@@ -9,10 +9,8 @@ from typing import TYPE_CHECKING
 from sonolube.errors import InvalidInput
 from sonolube.laboratory.block import Block, Channel
 from sonolube.laboratory.records.documents import EXIT_STATUS, DocumentLog, read_documents
-from sonolube.laboratory.records.raw_blocks import PartClock, RawPart, raw_header
-from sonolube.laboratory.records.recorded_part import recorded_part
-from sonolube.laboratory.records.recording_files import write_netcdf_recording
-from sonolube.laboratory.records.recovery import OpenPart, RunClock
+from sonolube.laboratory.records.raw_blocks import PartClock, RawPart, raw_header, scan_raw
+from sonolube.laboratory.records.recovery import OpenPart, RunClock, write_missing
 from sonolube.laboratory.records.run import RunSummary, run_summary
 from sonolube.laboratory.records.run_folder import (
     CLOCK_NAME,
@@ -22,10 +20,9 @@ from sonolube.laboratory.records.run_folder import (
     TRUTH,
     Facts,
     RunFacts,
-    keep_digests,
     make_run_folder,
     raw_parts,
-    recording_path,
+    raw_path,
 )
 from sonolube.operating_system import remove_file
 from sonolube.storage.files import locked_folder
@@ -276,14 +273,9 @@ class RunRecorder:
 
     def _write_recordings(self) -> None:
         """Write all parts as netCDF."""
-        documents, paths = read_documents(self.folder), list[Path]()
         with self._failing():
-            for number in raw_parts(self.folder):
-                part = recorded_part(self.folder, number, documents, facts=self._known.facts)
-                paths.append(recording_path(self.folder, number, part.clock_name))
-                if part.samples:
-                    write_netcdf_recording(part, self._known, paths[-1])
-            self._known = keep_digests(self.folder, self._known, paths)
+            parts = ((number, scan_raw(raw_path(self.folder, number))) for number in raw_parts(self.folder))
+            write_missing(self.folder, self._known, parts)
 
     def _note(self, kind: str, sample: int | None, facts: Mapping[str, str | float]) -> None:
         """Write an event."""

@@ -1,7 +1,7 @@
 """Parts of a recording that are being written, with their clock, and their recovery after a killed program."""
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -176,7 +176,7 @@ def recover_run(folder: Path) -> Recovery:
             _close_documents(folder, known, parts)
             done.append("marked as interrupted")
         clear_unfinished(folder)
-        _write_missing(folder, known, parts, done)
+        done += [f"{name} written" for name in write_missing(folder, known, parts.items())]
         remove_file(folder / RESERVE)
     return Recovery(summary=run_summary(folder), done=tuple(done))
 
@@ -239,17 +239,18 @@ def _close_documents(folder: Path, known: RunFacts, parts: dict[int, RawPart]) -
             log.close()
 
 
-def _write_missing(folder: Path, known: RunFacts, parts: dict[int, RawPart], done: list[str]) -> None:
-    """Write the parts of the recording that were not written."""
-    documents, paths = read_documents(folder), list[Path]()
-    for number, raw in parts.items():
+def write_missing(folder: Path, known: RunFacts, parts: Iterable[tuple[int, RawPart]]) -> list[str]:
+    """Write the parts of a recording that were not written, keep the digests of all, and return the names of the files."""
+    documents, paths, written = read_documents(folder), list[Path](), list[str]()
+    for number, raw in parts:
         path = recording_path(folder, number, raw.clock_name)
         paths.append(path)
         if raw.samples and not path.is_file():
             part = recorded_part(folder, number, documents, facts=known.facts, raw=raw)
             write_netcdf_recording(part, known, path)
-            done.append(f"{path.name} written")
+            written.append(path.name)
     keep_digests(folder, known, paths)
+    return written
 
 
 def _set_aside(path: Path, length: int) -> str:
