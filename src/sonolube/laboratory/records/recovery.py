@@ -240,7 +240,7 @@ def _close_documents(folder: Path, known: RunFacts, parts: dict[int, RawPart]) -
 
 
 def write_missing(folder: Path, known: RunFacts, parts: Iterable[tuple[int, RawPart]]) -> list[str]:
-    """Write the parts of a recording that were not written, keep the digests of all, and return the names of the files."""
+    """Write the parts of a recording that were not written, keep the digests of all, and return the names of files."""
     documents, paths, written = read_documents(folder), list[Path](), list[str]()
     for number, raw in parts:
         path = recording_path(folder, number, raw.clock_name)
