@@ -14,7 +14,7 @@ from rich.text import Text
 from tests.cli.conftest import Program
 
 from sonolube.cli.app import COMMANDS, GROUPS, Command
-from sonolube.cli.console.delivery import show_help_literally
+from sonolube.cli.console.figure_style import show_help_literally
 
 ROOT = Path(__file__).parents[2]
 UNIT = re.compile(r"\[[^\]\s]+\]")

@@ -12,7 +12,7 @@ import typer
 from typer.main import get_command
 
 from sonolube import __version__
-from sonolube.cli.console.delivery import show_help_literally, with_figure_style
+from sonolube.cli.console.figure_style import show_help_literally, with_figure_style
 from sonolube.cli.console.options import with_checked_files
 from sonolube.errors import SeveralFaults, SonolubeError
 from sonolube.execution.threads import threads_running

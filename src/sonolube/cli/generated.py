@@ -10,7 +10,8 @@ from typing import Annotated, Any, Literal, get_args, get_origin
 import typer
 
 from sonolube.cli.console import options
-from sonolube.cli.console.delivery import deliver, gpu_warning
+from sonolube.cli.console.delivery import deliver
+from sonolube.cli.console.figure_style import gpu_warning
 from sonolube.cli.console.options import ContinuedFolder, OutputFile, OutputFolder, operator_arguments, progress
 from sonolube.errors import InvalidInput
 from sonolube.execution.compilation import few_points
