@@ -125,8 +125,8 @@ def recorded(duration: float, *, paced: bool) -> None:
         ended: list[float] = []
         finish = recorder.end
 
-        def end() -> None:
-            finish()
+        def end(*, clock: str = "") -> None:
+            finish(clock=clock)
             ended.append(time.perf_counter())
 
         recorder.end = end  # type: ignore[method-assign]

@@ -34,22 +34,17 @@ class MemoryRecord:
         self.parts.append([])
         self.settings.append([(0, self._voltage, self._speed)])
 
-    def append(self, block: Block) -> None:
-        """Keep a block."""
-        self.parts[-1].append(block)
+    def append(self, block: Block, *, clock: str = "") -> None:
+        """Keep a block of the clock of the run."""
+        if not clock:
+            self.parts[-1].append(block)
 
-    def end(self) -> None:
+    def end(self, *, clock: str = "") -> None:
         """End a part."""
 
     def begin_beside(
         self, clock: str, channels: Sequence[Channel], *, sample_rate: float, first: int, ago: float, uncertainty: float
     ) -> None:
-        """Leave out other clocks."""
-
-    def append_beside(self, clock: str, block: Block) -> None:
-        """Leave out other clocks."""
-
-    def end_beside(self, clock: str) -> None:
         """Leave out other clocks."""
 
     def note(self, kind: str, *, sample: int | None = None, **facts: str | float) -> None:

@@ -133,15 +133,22 @@ class MemoryRecord:
         self.is_open = True
         self.segments.append([])
 
-    def append(self, block: Block) -> None:
+    def append(self, block: Block, *, clock: str = "") -> None:
         assert self.is_open
+        if clock:
+            assert clock in self.open_beside
+            self.beside.setdefault(clock, []).append(block)
+            return
         if sum(map(len, self.segments)) >= self.blocks_until_full:
             raise InvalidInput("blocks: no space left on device")
         self.segments[-1].append(block)
 
-    def end(self) -> None:
+    def end(self, *, clock: str = "") -> None:
         assert self.is_open
-        self.is_open = False
+        if clock:
+            self.open_beside.remove(clock)
+        else:
+            self.is_open = False
 
     def begin_beside(
         self, clock: str, channels: Sequence[Channel], *, sample_rate: float, first: int, ago: float, uncertainty: float
@@ -151,13 +158,6 @@ class MemoryRecord:
         assert uncertainty > 0
         self.open_beside.add(clock)
         self.rates_beside[clock] = sample_rate
-
-    def append_beside(self, clock: str, block: Block) -> None:
-        assert clock in self.open_beside
-        self.beside.setdefault(clock, []).append(block)
-
-    def end_beside(self, clock: str) -> None:
-        self.open_beside.remove(clock)
 
     def note(self, kind: str, *, sample: int | None = None, **facts: str | float) -> None:
         self.notes.append((kind, dict(facts)))

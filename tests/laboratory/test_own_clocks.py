@@ -21,7 +21,7 @@ from sonolube.laboratory import (
     DeviceLost,
     Devices,
     RunControl,
-    RunResult,
+    RunState,
     State,
     impossibilities,
     own_clocks,
@@ -143,7 +143,7 @@ def release() -> Iterator[Event]:
     event.set()
 
 
-def run(slow: Inputs, read: Protocol | None = None, rig: SimulatedRig | None = None) -> tuple[RunResult, SimulatedRig]:
+def run(slow: Inputs, read: Protocol | None = None, rig: SimulatedRig | None = None) -> tuple[RunState, SimulatedRig]:
     rig, record = rig or PacedRig(), MemoryRecord()
     result = run_protocol(read or protocol(), devices(rig, slow), record, operator=lambda _: True)
     assert (record.outcome, record.reason) == (result.outcome, result.reason)
@@ -404,13 +404,13 @@ def test_a_run_at_work_is_watched_at_all_clocks(tmp_path: Path) -> None:
     recorder.begin([force], sample_rate=RATE)
     recorder.append(Block(first_sample=0, sample_rate=RATE, values=np.full((4, 1), 2.0)))
     recorder.begin_beside("slow", [temperature()], sample_rate=SLOW, first=7, ago=0.1, uncertainty=0.05)
-    recorder.append_beside("slow", Block(first_sample=7, sample_rate=SLOW, values=np.full((2, 1), 300.0)))
+    recorder.append(Block(first_sample=7, sample_rate=SLOW, values=np.full((2, 1), 300.0)), clock="slow")
     seen = RunObserver(recorder.folder).look()
     assert seen.means == {"friction_force": (2.0, "N"), "pin_temperature": (300.0, "K")}
     with raises(InvalidInput, match="block begins at sample 8, but 9 was expected"):
-        recorder.append_beside("slow", Block(first_sample=8, sample_rate=SLOW, values=np.zeros((1, 1))))
+        recorder.append(Block(first_sample=8, sample_rate=SLOW, values=np.zeros((1, 1))), clock="slow")
     with raises(InvalidInput, match="no part of the recording has begun"):
-        recorder.append_beside("other", Block(first_sample=0, sample_rate=SLOW, values=np.zeros((1, 1))))
+        recorder.append(Block(first_sample=0, sample_rate=SLOW, values=np.zeros((1, 1))), clock="other")
     with raises(InvalidInput, match="needs one of the run, and no other of its own"):
         recorder.begin_beside("slow", [temperature()], sample_rate=SLOW, first=0, ago=0.0, uncertainty=0.05)
     assert recorder.finish("completed").outcome == "completed"

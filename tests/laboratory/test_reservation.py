@@ -13,16 +13,16 @@ from tests.laboratory.rig_stand_ins import HARDWARE
 from tests.laboratory.simulated_rig import MemoryRecord, SimulatedRig
 
 from sonolube.facts.protocol import protocol_from
-from sonolube.laboratory import reservation, run_protocol
+from sonolube.laboratory import run_plan as reservation, run_protocol
 from sonolube.laboratory.drivers.daqmx_library import daqmx_resource
 from sonolube.laboratory.drivers.device_map import first_readings
 from sonolube.laboratory.drivers.visa_connection import visa_resource
-from sonolube.laboratory.reservation import DeviceInUse, require_free, reserved
+from sonolube.laboratory.run_plan import DeviceInUse, require_free, reserved
 
 CARD = "ni-daqmx dev1"
 HOLDING = """
 import sys
-from sonolube.laboratory.reservation import reserved
+from sonolube.laboratory.run_plan import reserved
 with reserved([sys.argv[1]]):
     print("has it", flush=True)
     sys.stdin.read()

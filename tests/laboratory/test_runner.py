@@ -13,7 +13,7 @@ from tests.laboratory.simulated_rig import Fault, MemoryRecord, SimulatedRig
 
 from sonolube.errors import InvalidInput
 from sonolube.facts.protocol import Prompt, Protocol, protocol_from
-from sonolube.laboratory import Block, Channel, RunControl, RunResult, State, run_protocol
+from sonolube.laboratory import Block, Channel, RunControl, RunState, State, run_protocol
 from sonolube.laboratory.block import quantity_of
 
 MAP_TEST = {
@@ -51,7 +51,7 @@ def run(
     *,
     record: MemoryRecord | None = None,
     control: RunControl | None = None,
-) -> tuple[RunResult, SimulatedRig, MemoryRecord]:
+) -> tuple[RunState, SimulatedRig, MemoryRecord]:
     rig, record = rig or SimulatedRig(), record or MemoryRecord()
     result = run_protocol(test, rig.devices(), record, operator=lambda prompt: True, control=control)
     assert rig.is_off or result.state is State.FAILED

@@ -8,7 +8,7 @@ import pytest
 from tests.laboratory.simulated_rig import MemoryRecord, SimulatedRig
 
 from sonolube.facts.protocol import Prompt, protocol_from
-from sonolube.laboratory import Block, Channel, DeviceLost, RunControl, RunResult, State, run_protocol
+from sonolube.laboratory import Block, Channel, DeviceLost, RunControl, RunState, State, run_protocol
 
 PROTOCOL = protocol_from(
     {
@@ -48,7 +48,7 @@ class Watched(SimulatedRig):
         return block
 
 
-def run(rig: Watched, operator: Callable[[Prompt, RunControl], bool]) -> tuple[RunResult, MemoryRecord]:
+def run(rig: Watched, operator: Callable[[Prompt, RunControl], bool]) -> tuple[RunState, MemoryRecord]:
     record, control = MemoryRecord(), RunControl()
 
     def asked(prompt: Prompt) -> bool:

@@ -6,10 +6,9 @@ import pytest
 from hypothesis import given, strategies as st
 
 from sonolube.errors import InvalidInput
-from sonolube.laboratory import OUTCOMES, TRANSITIONS, Action, Event, RunState, State, Transition, after
+from sonolube.laboratory import OUTCOMES, TRANSITIONS, Event, RunState, State, after
 
 ENDINGS = (Event.STOP, Event.TRIP, Event.DEVICE_ERROR, Event.CRASH)
-OUTPUTS_ON = (State.RUNNING,)
 EXPECTED = {  # of every state: events that lead elsewhere; the rest stays or is refused
     State.IDLE: {Event.START: State.PREPARING},
     State.PREPARING: {Event.PREPARED: State.RUNNING, **dict.fromkeys(ENDINGS, State.STOPPING)},
@@ -30,10 +29,9 @@ EXPECTED = {  # of every state: events that lead elsewhere; the rest stays or is
 def test_every_event_in_every_state_leads_on_stays_or_is_refused(state: State, event: Event) -> None:
     present = RunState(state)
     if event in EXPECTED[state]:
-        assert after(present, event)[0].state is EXPECTED[state][event]
+        assert after(present, event).state is EXPECTED[state][event]
     elif event in ENDINGS:
-        found, action = after(present, event)
-        assert (found.state, action) == (state, Action.NOTHING)
+        assert after(present, event).state is state
     else:
         with pytest.raises(InvalidInput, match=f"cannot happen while {state.value}"):
             after(present, event)
@@ -41,31 +39,27 @@ def test_every_event_in_every_state_leads_on_stays_or_is_refused(state: State, e
 
 @pytest.mark.parametrize("state", [State.PREPARING, State.RUNNING, State.PAUSED])
 @pytest.mark.parametrize("event", ENDINGS)
-def test_whatever_ends_a_run_switches_motor_and_drive_off(state: State, event: Event) -> None:
-    found, action = after(RunState(state), event, reason="why")
-    assert action is Action.SWITCH_OFF
-    assert (found.outcome, found.reason) == (OUTCOMES[event], "why")
+def test_while_a_run_ends_motor_and_drive_are_being_switched_off(state: State, event: Event) -> None:
+    assert after(RunState(state), event, reason="why") == RunState(State.STOPPING, OUTCOMES[event], "why")
 
 
 @given(st.lists(st.sampled_from(Event), max_size=40))
-def test_outputs_are_only_on_while_running_and_every_other_state_was_entered_by_switching_them_off(
-    events: list[Event],
-) -> None:
-    present, on = RunState(), False
+def test_a_run_that_was_begun_only_ends_once_devices_have_said_whether_they_are_off(events: list[Event]) -> None:
+    present, is_begun = RunState(), False
     for event in events:
         if event not in TRANSITIONS[present.state]:
             continue
-        present, action = after(present, event)
-        on = action is Action.FOLLOW or (on and action not in (Action.HOLD, Action.SWITCH_OFF))
-        assert on <= (present.state in OUTPUTS_ON)
+        present = after(present, event)
+        is_begun = event is Event.START or (is_begun and event not in (Event.OFF, Event.NOT_OFF))
+        assert is_begun <= (present.state not in (State.IDLE, State.SAFE, State.FAILED))
 
 
 def test_the_first_cause_of_the_end_is_kept() -> None:
-    present, _ = after(RunState(State.RUNNING), Event.TRIP, reason="3 N")
-    present, _ = after(present, Event.DEVICE_ERROR, reason="no answer")
+    present = after(RunState(State.RUNNING), Event.TRIP, reason="3 N")
+    present = after(present, Event.DEVICE_ERROR, reason="no answer")
     assert (present.outcome, present.reason) == ("stopped", "3 N")
-    failed, action = after(present, Event.NOT_OFF, reason="motor: no answer")
-    assert action is Action.CALL_OPERATOR
+    failed = after(present, Event.NOT_OFF, reason="motor: no answer")
+    assert failed.state is State.FAILED
     assert (failed.outcome, failed.reason) == ("failed", "3 N; motor: no answer")
 
 
@@ -82,8 +76,8 @@ def transition_table() -> str:
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
-def _cell(transition: Transition | None, state: State) -> str:
+def _cell(following: State | None, state: State) -> str:
     """Next state in the table."""
-    if transition is None:
+    if following is None:
         return "-"
-    return "stays" if transition.state is state else transition.state.value
+    return "stays" if following is state else following.value

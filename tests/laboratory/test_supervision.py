@@ -10,7 +10,7 @@ from tests.laboratory.simulated_rig import MemoryRecord, SimulatedRig
 from tests.laboratory.supervised_clock import Clock
 
 from sonolube.facts.protocol import protocol_from
-from sonolube.laboratory import Block, Devices, DriveSetting, RunResult, State, run_protocol, supervision
+from sonolube.laboratory import Block, Devices, DriveSetting, RunState, State, run_protocol, supervision
 from sonolube.laboratory.supervision import Supervisor
 
 STEPS = [
@@ -88,7 +88,7 @@ def hardware(rig: SimulatedRig) -> Devices:
     return replace(rig.devices(), simulated=False, clock=None)
 
 
-def run(rig: SimulatedRig, record: MemoryRecord | None = None, advance: Callable[..., None] | None = None) -> RunResult:
+def run(rig: SimulatedRig, record: MemoryRecord | None = None, advance: Callable[..., None] | None = None) -> RunState:
     record = record or MemoryRecord()
     result = run_protocol(PROTOCOL, hardware(rig), record, operator=lambda _: True, advance=advance)
     assert (record.outcome, record.reason) == (result.outcome, result.reason)

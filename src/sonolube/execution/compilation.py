@@ -130,7 +130,6 @@ def private_folder() -> str:
     """
     import stat
     import tempfile
-    from pathlib import Path
 
     user = os.getuid() if hasattr(os, "getuid") else 0
     folder = Path(tempfile.gettempdir()) / f"sonolube-kernels-{user}"

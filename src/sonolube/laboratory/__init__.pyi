@@ -17,19 +17,17 @@ from .devices import (
     connect_devices as connect_devices,
     switch_outputs_off as switch_outputs_off,
 )
-from .interlocks import Interlock as Interlock, Trip as Trip, first_trip as first_trip, interlocks_for as interlocks_for
+from .interlocks import Interlock as Interlock, first_trip as first_trip, interlocks_for as interlocks_for
 from .own_clocks import OwnClocks as OwnClocks
-from .runner import RunResult as RunResult, run_protocol as run_protocol
-from .set_points import impossibilities as impossibilities, require_possible as require_possible
+from .run_plan import impossibilities as impossibilities, require_possible as require_possible
+from .runner import run_protocol as run_protocol
 from .states import (
     OUTCOMES as OUTCOMES,
     TRANSITIONS as TRANSITIONS,
-    Action as Action,
     Event as Event,
     RunControl as RunControl,
     RunState as RunState,
     State as State,
-    Transition as Transition,
     after as after,
 )
 from .supervised_run import Sampling as Sampling

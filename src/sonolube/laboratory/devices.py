@@ -174,22 +174,16 @@ class Recorder(Protocol):
     def begin(self, channels: Sequence[Channel], *, sample_rate: float) -> None:
         """Begin a recording without gaps."""
 
-    def append(self, block: Block) -> None:
-        """Keep a block."""
+    def append(self, block: Block, *, clock: str = "") -> None:
+        """Keep a block, of the clock of the run where no other is named."""
 
-    def end(self) -> None:
-        """End the recording."""
+    def end(self, *, clock: str = "") -> None:
+        """End the recording of the run, or of another clock."""
 
     def begin_beside(
         self, clock: str, channels: Sequence[Channel], *, sample_rate: float, first: int, ago: float, uncertainty: float
     ) -> None:
         """Begin a recording of another clock, whose first sample was taken some time ago, beside that of the run."""
-
-    def append_beside(self, clock: str, block: Block) -> None:
-        """Keep a block of another clock."""
-
-    def end_beside(self, clock: str) -> None:
-        """End the recording of another clock."""
 
     def note(self, kind: str, *, sample: int | None = None, **facts: str | float) -> None:
         """Keep what happened."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from operator import itemgetter
 from typing import Final
 
 import numpy as np
@@ -141,24 +142,6 @@ class Interlock:
     limit: float
 
 
-@dataclass(frozen=True, slots=True)
-class Trip:
-    """Sample beyond a limit.
-
-    Parameters
-    ----------
-    channel : str
-    sample : int
-        Number of the sample since the acquisition started.
-    reason : str
-        What was beyond which limit.
-    """
-
-    channel: str
-    sample: int
-    reason: str
-
-
 def interlocks_for(
     limits: Limits, channels: Mapping[str, Channel], drive: DriveSampling | None
 ) -> tuple[Interlock, ...]:
@@ -251,8 +234,8 @@ def set_point_trip(setting: DriveSetting, limits: Limits) -> str:
     return f"the drive is to be set to {format_si(reached, 'V')}; limits.voltage_maximum is {format_si(most, 'V')}"
 
 
-def first_trip(block: Block, names: Sequence[str], locks: Sequence[Interlock]) -> Trip | None:
-    """First sample of a block that is beyond a limit, is saturated, or is no number; None where all are within.
+def first_trip(block: Block, names: Sequence[str], locks: Sequence[Interlock]) -> str:
+    """Why the first sample that trips does: beyond its limit, saturated, or no number; empty where all are within.
 
     Parameters
     ----------
@@ -263,7 +246,7 @@ def first_trip(block: Block, names: Sequence[str], locks: Sequence[Interlock]) -
 
     Returns
     -------
-    Trip or None
+    str
     """
     trips = []
     for lock in locks:
@@ -271,8 +254,8 @@ def first_trip(block: Block, names: Sequence[str], locks: Sequence[Interlock]) -
         within = (np.abs(samples) <= lock.limit) & (samples > lock.channel.lowest) & (samples < lock.channel.highest)
         if not within.all():
             at = int(np.argmin(within))
-            trips.append(Trip(lock.channel.name, block.first_sample + at, _reason(lock, float(samples[at]))))
-    return min(trips, key=lambda trip: trip.sample, default=None)
+            trips.append((at, _reason(lock, float(samples[at]))))
+    return min(trips, key=itemgetter(0), default=(0, ""))[1]
 
 
 def _reason(lock: Interlock, value: float) -> str:

@@ -20,7 +20,7 @@ from sonolube.facts.protocol import Limits
 from sonolube.laboratory import supervision
 from sonolube.laboratory.block import BLOCK_DURATION, Block
 from sonolube.laboratory.devices import SILENT, Acquisition, DeviceError, Devices, Recorder, require_gapless
-from sonolube.laboratory.interlocks import IDLE_RATE, Interlock, Trip, first_trip
+from sonolube.laboratory.interlocks import IDLE_RATE, Interlock, first_trip
 from sonolube.laboratory.states import Event, RunControl, RunEnded, ending
 from sonolube.text.units import format_si
 
@@ -79,25 +79,17 @@ class StandingRig:
         """Read block after block until the end, or until something is wrong."""
         try:
             while not ended.is_set() and self._time < self._lasts:
-                trip = self._look()
-                if trip is not None:
+                if trip := self._look():
                     raise RunEnded(Event.TRIP, trip)
         except BaseException as failure:  # whatever a driver raises, the rig is watched no more
             self._failure = failure
             control.stop(ending(failure)[1])
 
-    def _look(self) -> str | None:
-        """Read a block, and return what is wrong."""
+    def _look(self) -> str:
+        """Read a block, and return what is wrong; empty where nothing is."""
         block = self._acquisition.read(max(1, round(BLOCK_DURATION * self._rate)))
         self._time += block.samples / self._rate
-        trip = first_trip(block, self._names, self._always)
-        if trip is not None:
-            return trip.reason
-        for what, lock in self._off:
-            trip = first_trip(block, self._names, [lock])
-            if trip is not None and self._time > SETTLING[what]:
-                return still_on(what, lock, trip)
-        return None
+        return first_trip(block, self._names, self._always) or still_on(block, self._names, self._off, self._time)
 
 
 def off_bounds(devices: Devices, limits: Limits) -> list[tuple[str, Interlock]]:
@@ -112,10 +104,14 @@ def off_bounds(devices: Devices, limits: Limits) -> list[tuple[str, Interlock]]:
     return [(what, Interlock(channels[name], most)) for name, (what, most) in at_rest.items() if name in channels]
 
 
-def still_on(what: str, lock: Interlock, trip: Trip) -> str:
-    """Why an output that was switched off counts as on."""
-    most = format_si(lock.limit, lock.channel.unit)
-    return f"the {what} was switched off, but {trip.reason.partition(';')[0]} (off is up to {most}): cut the power"
+def still_on(block: Block, names: Sequence[str], off: Sequence[tuple[str, Interlock]], stands: float) -> str:
+    """Why an output that was switched off some time ago, in s, counts as on by a block; empty where none does."""
+    for what, lock in off:
+        trip = first_trip(block, names, [lock]) if stands > SETTLING[what] else ""
+        if trip:
+            most = format_si(lock.limit, lock.channel.unit)
+            return f"the {what} was switched off, but {trip.partition(';')[0]} (off is up to {most}): cut the power"
+    return ""
 
 
 _CONNECTING: Final = 60.0  # s
@@ -310,9 +306,8 @@ class _Reader:
                 )
                 self._is_begun = True
             values = block.values[:, columns]
-            recorder.append_beside(
-                self.clock, Block(first_sample=block.first_sample, sample_rate=self._rate, values=values)
-            )
+            kept = Block(first_sample=block.first_sample, sample_rate=self._rate, values=values)
+            recorder.append(kept, clock=self.clock)
 
     def end_recording(self, recorder: Recorder) -> None:
         """Record no more; that nothing was recorded is noted."""
@@ -321,7 +316,7 @@ class _Reader:
         self.record([])
         if self._is_begun:
             self._is_begun = False
-            recorder.end_beside(self.clock)
+            recorder.end(clock=self.clock)
 
     def mean(self, channel: str) -> float | None:
         """Mean of a channel over the latest block."""
@@ -384,15 +379,12 @@ class _Reader:
 
     def _take(self, block: Block) -> None:
         """Hold a block to the limits, and keep it for the run."""
-        trip = first_trip(block, self._names, self._locks)
-        if trip is not None:
-            raise RunEnded(Event.TRIP, trip.reason)
+        if trip := first_trip(block, self._names, self._locks):
+            raise RunEnded(Event.TRIP, trip)
         with self._held:
             self._latest = block
             if self._recorded:
                 self._waiting.append((block, time.monotonic()))
             stood = time.monotonic() - self._stands_since if self._alarm is not None else 0.0
-        for what, lock in self._off:
-            found = first_trip(block, self._names, [lock]) if stood > SETTLING[what] else None
-            if found is not None:
-                raise RunEnded(Event.TRIP, still_on(what, lock, found))
+        if on := still_on(block, self._names, self._off, stood):
+            raise RunEnded(Event.TRIP, on)

@@ -1,18 +1,190 @@
-"""Plan of a run: its protocol, rig and devices, and what its record says of them."""
+"""Plan of a run: set points held to limits, its rig and devices, and the reservation of these for one user."""
 
-from collections.abc import Mapping, Sequence
+import hashlib
+import json
+import os
+import platform
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
+from itertools import chain, pairwise
+from math import pi
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
-from sonolube.facts.protocol import Protocol, protocol_text
-from sonolube.laboratory.devices import Devices
+from sonolube.errors import InvalidInput, SeveralFaults
+from sonolube.facts.protocol import Check, Protocol, SetPoint, flattened, protocol_text, step_at
+from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting
 from sonolube.laboratory.interlocks import DriveSampling, drive_sampling, interlocks_for, recorded_channels
 from sonolube.laboratory.records import UNRESOLVED, RunRecorder, new_run
-from sonolube.laboratory.set_points import groove_diameter
 from sonolube.laboratory.supervision import LATE
+from sonolube.operating_system import process_start, remove_file
 from sonolube.rig import Rig
+from sonolube.storage.files import is_locked, locked_folder, user_state_folder, write_atomically
 from sonolube.storage.user_files import input_text
+from sonolube.text.units import format_si
+from sonolube.vocabulary import unit_of
+
+SPEED_CHANNEL: Final = "rotation_speed"
+"""Channel that measures the speed of the disc."""
+
+SETTLING: Final = 5.0
+"""Time that a measured speed has to come within its bounds. [s]"""
+
+SPEEDS: Final = ("rotation_speed", "sliding_speed")
+"""Quantities that follow from the speed of the disc."""
+
+_AS_SET: Final = f"as it is set: no channel {SPEED_CHANNEL} measures it"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class CheckedValue:
+    """Value of a checked quantity.
+
+    Parameters
+    ----------
+    check : Check
+    value : float or None
+        In SI; None where nothing tells it.
+    is_set : bool
+        Whether it is the set point, which nothing measures.
+    """
+
+    check: Check
+    value: float | None
+    is_set: bool = False
+
+    @property
+    def holds(self) -> bool:
+        """Whether it lies within the bounds."""
+        low, high = self.check.bounds
+        return self.value is not None and low <= self.value <= high
+
+    @property
+    def facts(self) -> dict[str, str | float]:
+        """Facts that a record keeps of a check that holds."""
+        assert self.value is not None
+        return {"quantity": self.check.quantity, "value": self.value, **({"basis": _AS_SET} if self.is_set else {})}
+
+    @property
+    def reason(self) -> str:
+        """Why it does not hold."""
+        check = self.check
+        bounds = f"{check.lowest or 'any'} to {check.highest or 'any'}"
+        if self.value is None:
+            return f"check of {check.quantity}: no channel measures it; wanted {bounds}"
+        basis = f" ({_AS_SET})" if self.is_set else ""
+        return f"check of {check.quantity}: {format_si(self.value, unit_of(check.quantity))}{basis}, wanted {bounds}"
+
+
+def speed_checks(protocol: Protocol) -> tuple[str, ...]:
+    """Steps that check a speed; each place once."""
+    checks = {point.step: step_at(protocol, point.step) for point in flattened(protocol) if point.kind == "check"}
+    return tuple(place for place, step in checks.items() if isinstance(step, Check) and step.quantity in SPEEDS)
+
+
+_ROUNDING: Final = 1 + 1e-9
+
+
+def require_possible(protocol: Protocol, devices: Devices) -> None:
+    """Raise where devices cannot do what a protocol says, before anything is connected.
+
+    Parameters
+    ----------
+    protocol : Protocol
+    devices : Devices
+
+    Raises
+    ------
+    InvalidInput
+        With all that `impossibilities` finds.
+    """
+    faults = impossibilities(protocol, devices)
+    if faults:
+        raise InvalidInput(faults[0]) if len(faults) == 1 else SeveralFaults(faults)
+
+
+def impossibilities(protocol: Protocol, devices: Devices) -> tuple[str, ...]:
+    """Everything that a protocol asks for and devices cannot give.
+
+    Parameters
+    ----------
+    protocol : Protocol
+    devices : Devices
+
+    Returns
+    -------
+    tuple of str
+        Limits that no channel can watch; then of each step the highest voltage and speed beyond the devices, and the
+        channels that are missing.
+    """
+    unwatched: tuple[str, ...] = ()
+    try:
+        interlocks_for(protocol.limits, devices.channels, drive_sampling(protocol))
+    except InvalidInput as refusal:
+        unwatched = refusal.faults if isinstance(refusal, SeveralFaults) else (str(refusal),)
+    diameter, points = groove_diameter(protocol, devices), flattened(protocol)
+    found = (_faults(point, before, devices, diameter) for before, point in pairwise((None, *points)) if point)
+    return (*dict.fromkeys(unwatched), *highest_of_steps(chain.from_iterable(found)))
+
+
+def highest_of_steps(found: Iterable[tuple[str, str, float, str]]) -> tuple[str, ...]:
+    """Texts of faults by step, kind and value, of each step and kind the one with the highest value."""
+    highest: dict[tuple[str, str], tuple[float, str]] = {}
+    for step, kind, value, text in found:
+        known = highest.get((step, kind))
+        if known is None or value > known[0]:
+            highest[step, kind] = (value, text)
+    return tuple(text for _, text in highest.values())
+
+
+def groove_diameter(protocol: Protocol, devices: Devices) -> float:
+    """Diameter of the circle under the pin, of the protocol or else of the rig. [m]"""
+    return protocol.metadata.groove_diameter or devices.groove_diameter
+
+
+def rotation_speed(point: SetPoint, diameter: float) -> float:
+    """Speed of the disc that a set point asks for. [1/s]"""
+    if point.rotation_speed is not None:
+        return point.rotation_speed
+    return (point.sliding_speed or 0.0) / (pi * diameter)
+
+
+def drive_setting(point: SetPoint) -> DriveSetting | None:
+    """Output of the drive source that a set point asks for; none for off."""
+    if point.frequency is None or point.voltage_peak_to_peak == 0:
+        return None
+    return DriveSetting(
+        voltage_peak_to_peak=point.voltage_peak_to_peak,
+        voltage_offset=point.voltage_offset,
+        frequency=point.frequency,
+        waveform=point.waveform,
+    )
+
+
+def _faults(
+    point: SetPoint, before: SetPoint | None, devices: Devices, diameter: float
+) -> Iterator[tuple[str, str, float, str]]:
+    """Step, kind, value and text of what a set point changes to and devices cannot give."""
+    place, drive, motor = f"step {point.step}", devices.drive, devices.motor
+    volts = point.voltage_maximum
+    if volts > drive.voltage_maximum * _ROUNDING and (before is None or volts != before.voltage_maximum):
+        reached, most = format_si(volts, "V"), format_si(drive.voltage_maximum, "V")
+        yield point.step, "voltage", volts, f"{place}: the drive reaches {reached}; {drive.name} gives at most {most}"
+    turns, fastest = rotation_speed(point, diameter), motor.rotation_speed_maximum
+    if turns > fastest * _ROUNDING and (before is None or turns != rotation_speed(before, diameter)):
+        wanted, most = format_si(turns, "1/s"), format_si(fastest, "1/s")
+        yield point.step, "speed", turns, f"{place}: needs {wanted}; {motor.name} turns at most at {most}"
+    channels, acquisition = devices.channels, devices.acquisition
+    missing = [name for name in point.channels if name not in channels]
+    if missing and point.kind == "acquire":
+        names = f"channel {missing[0]}" if len(missing) == 1 else f"channels {', '.join(missing)}"
+        text = f"{place}: {acquisition.name} has no {names}; it has {', '.join(channels)}"
+        yield point.step, "channels", 0.0, text
+    elif point.kind == "acquire" and all(name not in acquisition.channels for name in point.channels):
+        yield point.step, "channels", 0.0, f"{place}: records no channel of {acquisition.name}; add one"
+
 
 _STATED: Final = ("specimen", "operator", "humidity", "calibrated", "block", "run")  # of the metadata of a protocol
 
@@ -106,3 +278,82 @@ def _facts(plan: RunPlan, devices: Devices) -> dict[str, str | float | int | boo
     if plan.device_file is not None:
         facts["rig"] = plan.device_file.stem
     return facts
+
+
+_HOLDER: Final = "holder.json"  # process that has a device
+_LARGEST: Final = 10_000  # bytes of it
+
+
+class DeviceInUse(DeviceError):
+    """A device that another run has."""
+
+
+@contextmanager
+def reserved(resources: Sequence[str]) -> Iterator[None]:
+    """Keep other runs of this user from devices inside a `with` block; a dead process keeps nobody out."""
+    with ExitStack() as held:
+        for resource in sorted(set(resources)):
+            held.enter_context(_reserved(resource))
+        yield
+
+
+def require_free(resources: Sequence[str]) -> None:
+    """Raise where a run has one of these devices."""
+    with reserved(resources):
+        pass
+
+
+@contextmanager
+def _reserved(resource: str) -> Iterator[None]:
+    """Keep other runs from one device."""
+    folder = _folder(resource)
+    with ExitStack() as held:
+        try:
+            held.enter_context(locked_folder(folder, purpose="run"))
+        except InvalidInput:
+            if is_locked(folder):
+                raise _in_use(resource, folder) from None
+            raise
+        if _is_alive(_holder(folder)):  # of a file system without locks
+            raise _in_use(resource, folder)
+        own = {"process": os.getpid(), "started": process_start(os.getpid()), "folder": str(Path.cwd())}
+        write_atomically(folder / _HOLDER, json.dumps(own))
+        held.callback(remove_file, folder / _HOLDER)
+        yield
+
+
+def _folder(resource: str) -> Path:
+    """Folder of the lock of a device, which is one of this computer unless it is on the network."""
+    place = "network" if resource.startswith("tcpip ") else platform.node() or "computer"
+    words = re.sub(r"[^a-z0-9]+", "-", f"{place} {resource}".lower()).strip("-")[:80]
+    digest = hashlib.sha256(f"{place} {resource}".encode()).hexdigest()[:8]  # of names with the same letters
+    return user_state_folder() / "devices" / f"{words}-{digest}"
+
+
+def _in_use(resource: str, folder: Path) -> DeviceInUse:
+    """Refusal with the process that has a device."""
+    holder = _holder(folder)
+    process = holder.get("process")
+    if not process:
+        return DeviceInUse(f"{resource} is in use by another run; wait for its end")
+    if not _is_alive(holder):
+        return DeviceInUse(
+            f"{resource} is in use by a program that process {process}, now dead, had started; see that motor and drive"
+            " are off, and end it"
+        )
+    return DeviceInUse(f"{resource} is in use by another run: process {process}, started in {holder.get('folder')}")
+
+
+def _holder(folder: Path) -> dict[str, Any]:
+    """Process that has, or had, a device; empty where none is known."""
+    with suppress(OSError, ValueError, RecursionError):
+        found = json.loads((folder / _HOLDER).read_bytes()[:_LARGEST])
+        if isinstance(found, dict) and isinstance(found.get("process"), int):
+            return found
+    return {}
+
+
+def _is_alive(holder: dict[str, Any]) -> bool:
+    """Whether the very process lives, and not a later one of the same number."""
+    started = process_start(holder["process"]) if holder else ""
+    return bool(started) and started == holder.get("started")

@@ -1,7 +1,6 @@
 """Runner: a protocol on the devices of a rig, recorded block by block; however it ends, motor and drive are off."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from itertools import pairwise
 from math import pi
 from threading import Event as Signal
@@ -10,9 +9,9 @@ from typing import Final
 from sonolube.facts.protocol import Check, Prompt, Protocol, SetPoint, flattened, step_at
 from sonolube.laboratory.block import BLOCK_DURATION
 from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting, Recorder
-from sonolube.laboratory.interlocks import drive_sampling, idle_rate, interlocks_for
+from sonolube.laboratory.interlocks import drive_sampling, idle_rate, interlocks_for, set_point_trip
 from sonolube.laboratory.own_clocks import OwnClocks, StandingRig, off_bounds
-from sonolube.laboratory.set_points import (
+from sonolube.laboratory.run_plan import (
     SETTLING,
     SPEED_CHANNEL,
     SPEEDS,
@@ -22,9 +21,8 @@ from sonolube.laboratory.set_points import (
     require_possible,
     rotation_speed,
     speed_checks,
-    speed_of,
 )
-from sonolube.laboratory.states import Event, RunControl, RunEnded, State
+from sonolube.laboratory.states import Event, RunControl, RunEnded, RunState
 from sonolube.laboratory.supervised_run import Advance, Sampling, SupervisedRun
 from sonolube.storage.interruption import asked_by_signal, undone_at_signal
 from sonolube.text.units import format_si
@@ -35,25 +33,6 @@ Operator = Callable[[Prompt], bool]
 """Shows a prompt, and returns whether the operator has confirmed it; False ends the run."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class RunResult:
-    """Outcome of a run.
-
-    Parameters
-    ----------
-    state : State
-        SAFE, or FAILED where motor or drive may be on.
-    outcome : str
-        completed, stopped or failed.
-    reason : str
-        Why it ended before its protocol.
-    """
-
-    state: State
-    outcome: str
-    reason: str
-
-
 def run_protocol(
     protocol: Protocol,
     devices: Devices,
@@ -62,7 +41,7 @@ def run_protocol(
     operator: Operator,
     control: RunControl | None = None,
     advance: Advance | None = None,
-) -> RunResult:
+) -> RunState:
     """Run a protocol on devices and record it.
 
     Parameters
@@ -81,8 +60,9 @@ def run_protocol(
 
     Returns
     -------
-    RunResult
-        Also where a device, a limit, the disk or the operator has ended the run.
+    RunState
+        SAFE, or FAILED where motor or drive may be on; also where a device, a limit, the disk or the operator has ended
+        the run.
 
     Raises
     ------
@@ -123,11 +103,10 @@ class _Run(SupervisedRun):
         self._turns = 0.0
         self._conditions: dict[str, float | str] = {"lubricant": ""}
 
-    def complete(self, advance: Advance | None) -> RunResult:
+    def complete(self, advance: Advance | None) -> RunState:
         """Follow the protocol to its end, whatever that is."""
         self._complete(advance)
-        present = self._present
-        return RunResult(state=present.state, outcome=present.outcome, reason=present.reason)
+        return self._present
 
     def _follow(self, advance: Advance | None) -> None:
         """Reach one set point after the other."""
@@ -199,7 +178,7 @@ class _Run(SupervisedRun):
             if setting is None:
                 self._devices.drive.off()
             else:
-                self._require_within(setting, self._protocol.limits)
+                self._end_at(set_point_trip(setting, self._protocol.limits))
                 self._devices.drive.drive(setting)
             self._drive = setting
             frequency = 0.0 if setting is None else setting.frequency
@@ -293,14 +272,15 @@ class _Run(SupervisedRun):
 
     def _checked(self, check: Check) -> CheckedValue:
         """Value of a checked quantity, as measured; of a speed that nothing measures, as it is set."""
-        is_speed, measures_speed = check.quantity in SPEEDS, SPEED_CHANNEL in self._devices.channels
-        if is_speed and not measures_speed:
-            return speed_of(check, rotation_speed=self._turns, groove_diameter=self._diameter, is_set=True)
-        value, trip = self._sampling.measure(SPEED_CHANNEL if is_speed else check.quantity)
-        self._end_at(trip)
-        if is_speed and value is not None:
-            return speed_of(check, rotation_speed=value, groove_diameter=self._diameter, is_set=False)
-        return CheckedValue(check=check, value=value)
+        is_speed = check.quantity in SPEEDS
+        is_set = is_speed and SPEED_CHANNEL not in self._devices.channels
+        value: float | None = self._turns
+        if not is_set:
+            value, trip = self._sampling.measure(SPEED_CHANNEL if is_speed else check.quantity)
+            self._end_at(trip)
+        if check.quantity == "sliding_speed" and value is not None:
+            value = value * pi * self._diameter
+        return CheckedValue(check=check, value=value, is_set=is_set)
 
     def _doing(self) -> str:
         """Line of progress, with friction and temperature where they are measured."""

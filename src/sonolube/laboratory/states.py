@@ -1,4 +1,4 @@
-"""States of a run: what may happen in each and what must be done then, requests of others, and how it ends.
+"""States of a run: what may happen in each, requests of others, and how it ends.
 
 The states have no input and no output; the end of a run follows from what was raised.
 """
@@ -50,62 +50,20 @@ class Event(Enum):
     RESET = "reset"
 
 
-class Action(Enum):
-    """Action that follows an event."""
-
-    NOTHING = "nothing"
-    CONNECT = "connect the devices, outputs off"
-    FOLLOW = "set motor and drive as the protocol says"
-    HOLD = "switch motor and drive off, keep the devices"
-    SWITCH_OFF = "switch motor and drive off, release the devices"
-    CLOSE = "close the record"
-    CALL_OPERATOR = "close the record; tell the operator to cut the power"
-
-
-@dataclass(frozen=True, slots=True)
-class Transition:
-    """Next state and what must be done.
-
-    Parameters
-    ----------
-    state : State
-    action : Action
-    """
-
-    state: State
-    action: Action
-
-
-_STAY: Final = {state: Transition(state, Action.NOTHING) for state in State}
-_END: Final = Transition(State.STOPPING, Action.SWITCH_OFF)
 _ENDINGS: Final = (Event.STOP, Event.TRIP, Event.DEVICE_ERROR, Event.CRASH)
 
-TRANSITIONS: Final[Mapping[State, Mapping[Event, Transition]]] = MappingProxyType(
+TRANSITIONS: Final[Mapping[State, Mapping[Event, State]]] = MappingProxyType(
     {
-        State.IDLE: {
-            Event.START: Transition(State.PREPARING, Action.CONNECT),
-            **dict.fromkeys(_ENDINGS, _STAY[State.IDLE]),
-        },
-        State.PREPARING: {Event.PREPARED: Transition(State.RUNNING, Action.FOLLOW), **dict.fromkeys(_ENDINGS, _END)},
-        State.RUNNING: {
-            Event.PAUSE: Transition(State.PAUSED, Action.HOLD),
-            Event.COMPLETED: _END,
-            **dict.fromkeys(_ENDINGS, _END),
-        },
-        State.PAUSED: {Event.RESUME: Transition(State.RUNNING, Action.FOLLOW), **dict.fromkeys(_ENDINGS, _END)},
-        State.STOPPING: {
-            Event.OFF: Transition(State.SAFE, Action.CLOSE),
-            Event.NOT_OFF: Transition(State.FAILED, Action.CALL_OPERATOR),
-            **dict.fromkeys(_ENDINGS, _STAY[State.STOPPING]),
-        },
-        State.SAFE: {Event.RESET: Transition(State.IDLE, Action.NOTHING), **dict.fromkeys(_ENDINGS, _STAY[State.SAFE])},
-        State.FAILED: {
-            Event.RESET: Transition(State.IDLE, Action.NOTHING),
-            **dict.fromkeys(_ENDINGS, _STAY[State.FAILED]),
-        },
+        State.IDLE: {Event.START: State.PREPARING, **dict.fromkeys(_ENDINGS, State.IDLE)},
+        State.PREPARING: {Event.PREPARED: State.RUNNING, **dict.fromkeys(_ENDINGS, State.STOPPING)},
+        State.RUNNING: {Event.PAUSE: State.PAUSED, **dict.fromkeys((Event.COMPLETED, *_ENDINGS), State.STOPPING)},
+        State.PAUSED: {Event.RESUME: State.RUNNING, **dict.fromkeys(_ENDINGS, State.STOPPING)},
+        State.STOPPING: {Event.OFF: State.SAFE, Event.NOT_OFF: State.FAILED, **dict.fromkeys(_ENDINGS, State.STOPPING)},
+        State.SAFE: {Event.RESET: State.IDLE, **dict.fromkeys(_ENDINGS, State.SAFE)},
+        State.FAILED: {Event.RESET: State.IDLE, **dict.fromkeys(_ENDINGS, State.FAILED)},
     }
 )
-"""Transition of each state by each event; what is not in it is a mistake of the program and is refused."""
+"""Next state of each state by each event; what is not in it is a mistake of the program and is refused."""
 
 OUTCOMES: Final[Mapping[Event, str]] = MappingProxyType(
     {
@@ -127,9 +85,9 @@ class RunState:
     ----------
     state : State
     outcome : str
-        Of the first event that ended the run; empty before.
+        completed, stopped or failed, by the first event that ended the run; empty before.
     reason : str
-        Why it ended.
+        Why it ended before its protocol.
     """
 
     state: State = State.IDLE
@@ -137,8 +95,8 @@ class RunState:
     reason: str = ""
 
 
-def after(present: RunState, event: Event, *, reason: str = "") -> tuple[RunState, Action]:
-    """State of a run after an event, and what must be done.
+def after(present: RunState, event: Event, *, reason: str = "") -> RunState:
+    """State of a run after an event.
 
     Parameters
     ----------
@@ -150,25 +108,23 @@ def after(present: RunState, event: Event, *, reason: str = "") -> tuple[RunStat
     Returns
     -------
     RunState
-    Action
 
     Raises
     ------
     InvalidInput
         If the event cannot happen in the state.
     """
-    transition = TRANSITIONS[present.state].get(event)
-    if transition is None:
+    state = TRANSITIONS[present.state].get(event)
+    if state is None:
         known = ", ".join(each.value for each in TRANSITIONS[present.state])
         raise InvalidInput(f"event {event.value!r} cannot happen while {present.state.value}; known: {known}")
-    found = replace(present, state=transition.state)
     if event is Event.RESET:
-        found = RunState()
-    elif event is Event.NOT_OFF:
-        found = replace(found, outcome="failed", reason="; ".join(filter(None, (present.reason, reason))))
-    elif event in OUTCOMES and not present.outcome and transition.state is State.STOPPING:
-        found = replace(found, outcome=OUTCOMES[event], reason=reason)
-    return found, transition.action
+        return RunState()
+    if event is Event.NOT_OFF:
+        return RunState(state, "failed", "; ".join(filter(None, (present.reason, reason))))
+    if event in OUTCOMES and not present.outcome and state is State.STOPPING:
+        return RunState(state, OUTCOMES[event], reason)
+    return replace(present, state=state)
 
 
 @dataclass(slots=True)

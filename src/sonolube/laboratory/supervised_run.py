@@ -11,20 +11,18 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import SonolubeError
-from sonolube.facts.protocol import Limits
 from sonolube.laboratory.block import BLOCK_DURATION, Block
 from sonolube.laboratory.devices import (
     Acquisition,
     Devices,
-    DriveSetting,
     Recorder,
     connect_devices,
     require_gapless,
     switch_outputs_off,
 )
-from sonolube.laboratory.interlocks import Interlock, Trip, first_trip, set_point_trip
+from sonolube.laboratory.interlocks import Interlock, first_trip
 from sonolube.laboratory.own_clocks import OwnClocks
-from sonolube.laboratory.reservation import reserved
+from sonolube.laboratory.run_plan import reserved
 from sonolube.laboratory.states import (
     Event,
     RunControl,
@@ -137,14 +135,14 @@ class Sampling:
                 self._beside.end_recording(self._recorder)
                 self._recorder.end()
 
-    def read_until(self, time: float) -> Trip | None:
-        """Read the samples up to a time of the protocol, and return the first one beyond a limit. [s]"""
+    def read_until(self, time: float) -> str:
+        """Read the samples up to a time of the protocol, and return why one is beyond a limit; empty without. [s]"""
         count = round((time - self._origin) * self.rate) - self.sample
-        trip = self._take(count) if count > 0 else None
+        trip = self._take(count) if count > 0 else ""
         self.time = time
         return trip
 
-    def measure(self, channel: str) -> tuple[float | None, Trip | None]:
+    def measure(self, channel: str) -> tuple[float | None, str]:
         """Mean of a channel over a block that is read for it while the clock of the protocol stands.
 
         Parameters
@@ -155,10 +153,11 @@ class Sampling:
         -------
         float or None
             In SI; None where the channel is not sampled.
-        Trip or None
+        str
+            Why a sample is beyond a limit; empty where none is.
         """
         if self.mean(channel) is None and channel not in self._names:
-            return None, None
+            return None, ""
         count = max(1, round(BLOCK_DURATION * self.rate))
         trip = self._take(count)
         self._origin -= count / self.rate
@@ -179,7 +178,7 @@ class Sampling:
         """Those of channels that the acquisition has."""
         return [name for name in channels if name in self._acquisition.channels]
 
-    def _take(self, count: int) -> Trip | None:
+    def _take(self, count: int) -> str:
         """Read samples, hold them to the counter and to the limits, and record them."""
         block = self._acquisition.read(count)
         require_gapless(block, self.sample, device=self._acquisition.name)
@@ -188,7 +187,7 @@ class Sampling:
             values = block.values[:, : self._recorded]
             self._recorder.append(Block(first_sample=block.first_sample, sample_rate=self.rate, values=values))
         trip = first_trip(block, self._names, self._locks)
-        if trip is None:
+        if not trip:
             self._beside.keep(self._recorder)
         return trip
 
@@ -250,7 +249,7 @@ class SupervisedRun(ABC):
 
     def _happens(self, event: Event, reason: str = "") -> None:
         """Change the state of the run by an event, and note it."""
-        self._present, _ = after(self._present, event, reason=reason)
+        self._present = after(self._present, event, reason=reason)
         if event is not Event.START:
             self._note(event.value, reason=reason, state=self._present.state.value)
 
@@ -270,16 +269,10 @@ class SupervisedRun(ABC):
         if self._control.stop_reason:
             raise RunEnded(Event.STOP, self._control.stop_reason)
 
-    def _end_at(self, trip: Trip | None) -> None:
-        """End the run at a sample beyond a limit."""
-        if trip is not None:
-            raise RunEnded(Event.TRIP, trip.reason)
-
-    def _require_within(self, setting: DriveSetting, limits: Limits) -> None:
-        """End the run before a setting beyond the limit of the voltage is sent."""
-        excess = set_point_trip(setting, limits)
-        if excess:
-            raise RunEnded(Event.TRIP, excess)
+    def _end_at(self, trip: str) -> None:
+        """End the run at a sample beyond a limit, or before such a setting is sent."""
+        if trip:
+            raise RunEnded(Event.TRIP, trip)
 
     def _switch_off(self) -> list[str]:
         """Switch drive and motor off where they were connected, and return what failed; never raises."""

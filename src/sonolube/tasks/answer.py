@@ -2,7 +2,7 @@
 
 import json
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias, TypeVar, dataclass_transform
@@ -219,6 +219,39 @@ class Answer(ABC):
 def answer(kind: type[_Answer]) -> type[_Answer]:
     """Class of answers as a frozen dataclass that prints as the terminal does."""
     return dataclass(frozen=True, kw_only=True, repr=False, eq=False)(kind)
+
+
+@answer
+class Listing(Answer):
+    """Table of facts.
+
+    Parameters
+    ----------
+    parts : sequence of Block
+        For people.
+    content : dict
+        For JSON.
+    labelled : callable, optional
+        Returns the same as a dataset; the quantities and texts of the content where absent.
+    """
+
+    is_lookup: ClassVar[bool] = True
+
+    parts: Sequence[Block]
+    content: dict[str, Any]
+    labelled: "Callable[[], Dataset] | None" = None
+
+    def blocks(self) -> Sequence[Block]:
+        """Blocks as given."""
+        return self.parts
+
+    def object(self) -> dict[str, Any]:
+        """Object as given."""
+        return self.content
+
+    def dataset(self) -> Dataset:
+        """Table as a labelled dataset, with units."""
+        return super().dataset() if self.labelled is None else self.labelled()
 
 
 def _plain(name: str) -> str:

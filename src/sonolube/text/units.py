@@ -1,42 +1,25 @@
 """Conversion of text with a unit, such as "8 um", to SI numbers and back, for files, commands and pages.
 
-Units that users write most have their factors here, so that reading a rig need not wait for a registry of units.
+Units that users write most have their factors in `common_units.toml` beside this module, so that reading a rig need not
+wait for a registry of units.
 """
 
 import math
 import re
+import tomllib
 from collections.abc import Sequence
 from decimal import Decimal
 from functools import cache, lru_cache
+from importlib.resources import files
 from typing import Any
 
 from sonolube.errors import InvalidInput
 from sonolube.text.unit_grammar import canonical_unit
 from sonolube.vocabulary import quantities
 
+_TABLE: dict[str, Any] = tomllib.loads(files("sonolube.text").joinpath("common_units.toml").read_text(encoding="utf-8"))
 COMMON_FACTORS: dict[str, dict[str, float]] = {
-    "": {"": 1.0, "%": 0.01},
-    "N": {"N": 1.0, "mN": 1e-3, "uN": 1e-6, "kN": 1e3, "lbf": 4.4482216152605005},
-    "m": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "in": 0.0254},
-    "m2": {"m2": 1.0, "cm2": 1e-4, "mm2": 1e-6, "um2": 1e-12, "m^2": 1.0, "mm^2": 1e-6, "um^2": 1e-12, "mm3/m": 1e-9},
-    "m3": {"m3": 1.0, "mm3": 1e-9},
-    "1/m2": {"1/m2": 1.0, "/m2": 1.0, "1/mm2": 1e6, "/mm2": 1e6},
-    "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "kgf/mm2": 9806650.0},
-    "V": {"V": 1.0, "mV": 1e-3, "kV": 1e3},
-    "Hz": {"Hz": 1.0, "kHz": 1e3, "MHz": 1e6},
-    "m/s": {"m/s": 1.0, "mm/s": 1e-3, "um/s": 1e-6},
-    "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0},
-    "F": {"F": 1.0, "uF": 1e-6, "nF": 1e-9, "pF": 1e-12},
-    "N/m": {"N/m": 1.0, "kN/m": 1e3, "MN/m": 1e6, "N/mm": 1e3, "N/um": 1e6},
-    "m/V": {"m/V": 1.0, "um/V": 1e-6, "nm/V": 1e-9},
-    "N s/m": {"N s/m": 1.0, "N*s/m": 1.0},
-    "kg": {"kg": 1.0, "g": 1e-3, "mg": 1e-6},
-    "W": {"W": 1.0, "mW": 1e-3, "kW": 1e3},
-    "K": {"K": 1.0},
-    "1/s": {"1/s": 1.0, "1/min": 1 / 60},
-    "m2/N": {"m2/N": 1.0, "mm3/(N m)": 1e-9, "mW mm2/(N W)": 1e-9},
-    "m s/N": {"m s/N": 1.0, "mW mm2 s/(N W m)": 1e-9},
-    "kg/m3": {"kg/m3": 1.0},
+    unit: entry["factors"] for unit, entry in _TABLE.items() if "factors" in entry
 }
 """SI value of one of a unit, by the SI unit and the unit as written; those of pint, to the last bit."""
 
@@ -50,28 +33,7 @@ _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _ROUNDING = 1e-9  # of the scale of a value, below which only errors of floating-point numbers remain
 _LONGEST_QUOTE = 80  # characters of a text that an error quotes
 
-_KINDS = {
-    "N": "a force, such as 40N",
-    "m": "a length, such as 8um",
-    "m2": "an area, such as 2.25mm2",
-    "m3": "a volume, such as 1.5mm3",
-    "1/m2": "a number per area, such as 4.7e10/m2",
-    "Pa": "a pressure, such as 410MPa",
-    "V": "a voltage, such as 25.9V",
-    "Hz": "a frequency, such as 22kHz",
-    "m/s": "a speed, such as 20.3mm/s",
-    "s": "a time, such as 4h",
-    "F": "a capacitance, such as 360nF",
-    "N/m": "a stiffness, such as 2e9N/m",
-    "m/V": "a length per voltage, such as 0.09um/V",
-    "N s/m": "a damping coefficient, such as 30N*s/m",
-    "kg": "a mass, such as 70g",
-    "W": "a power, such as 5.3W",
-    "rad": "an angle, such as 90deg",
-    "1/s": "a rate, such as 6.67/min",
-    "K": "a temperature, such as 293K",
-    "": "a pure number, such as 0.35",
-}
+_KINDS: dict[str, str] = {unit: entry["kind"] for unit, entry in _TABLE.items() if "kind" in entry}
 
 
 def to_si(text: str, *, unit: str, name: str) -> float:

@@ -12,15 +12,9 @@ from hypothesis import given, settings, strategies as st
 from sonolube.charts import draw_chart
 from sonolube.design.control import Amplifier
 from sonolube.errors import InvalidInput
-from sonolube.facts.protocol import (
-    PROMPT_DURATIONS,
-    Protocol,
-    SetPoint,
-    protocol_by_name_or_file,
-    protocol_from,
-    protocol_names,
-)
+from sonolube.facts.protocol import PROMPT_DURATIONS, Protocol, protocol_by_name_or_file, protocol_from, protocol_names
 from sonolube.figure import publication_style, render_figure
+from sonolube.laboratory.devices import DriveSetting
 from sonolube.laboratory.dry_run import DryRun, HeatingAssumptions, drive_load, dry_run, dry_run_chart, dry_run_lines
 from sonolube.rig import Rig, read_rig
 
@@ -71,17 +65,16 @@ def drive(volts: float, frequency: str = "22 kHz") -> dict[str, Any]:
 @given(volts=st.floats(0.1, 200), frequency=st.floats(10, 1e5), capacitance=st.floats(1e-9, 1e-5))
 @settings(max_examples=50, deadline=None)
 def test_a_sine_on_a_capacitance_needs_pi_f_c_u_of_current(volts: float, frequency: float, capacitance: float) -> None:
-    point = SetPoint(time=0, step="1", kind="drive", voltage_peak_to_peak=volts, frequency=frequency)
-    load = drive_load(point, capacitance=capacitance)
+    load = drive_load(DriveSetting(voltage_peak_to_peak=volts, frequency=frequency), capacitance=capacitance)
     assert load.peak_current == pytest.approx(pi * frequency * capacitance * volts)
     assert load.slew_rate == pytest.approx(pi * frequency * volts)
     assert load.capacitive_power == pytest.approx(2 * pi * frequency * capacitance * volts**2 / 8)
 
 
 def test_the_current_of_a_triangle_is_that_of_its_slope_and_never_told_too_low() -> None:
-    point = SetPoint(time=0, step="1", kind="drive", voltage_peak_to_peak=20.0, frequency=1e3, waveform="triangle")
+    setting = DriveSetting(voltage_peak_to_peak=20.0, frequency=1e3, waveform="triangle")
     exact = 1e-6 * 2 * 20 * 1e3
-    assert exact <= drive_load(point, capacitance=1e-6).peak_current <= 1.19 * exact  # 18 % by truncation
+    assert exact <= drive_load(setting, capacitance=1e-6).peak_current <= 1.19 * exact  # 18 % by truncation
 
 
 def test_the_map_test_draws_the_powers_of_table_4_1(power_map: Rig) -> None:

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 
 from pytest import MonkeyPatch
 
-_READERS = ("sonolube.laboratory.records.observation.time", "sonolube.laboratory.records.open_part.time")
+_READERS = ("sonolube.laboratory.records.observation.time", "sonolube.laboratory.records.recovery.time")
 
 
 class Clock:

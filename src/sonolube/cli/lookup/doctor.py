@@ -1,14 +1,11 @@
 """Command `doctor`: state of the installation, how to mend it, and a self-check against closed forms."""
 
-from collections.abc import Sequence
-from typing import Any, ClassVar
-
 import typer
 
 from sonolube.cli.console.delivery import deliver
 from sonolube.cli.console.options import Json, progress
-from sonolube.report.results.installation import Installation, installation
-from sonolube.tasks.answer import Answer, Block, answer
+from sonolube.report.results.installation import installation
+from sonolube.tasks.answer import Listing
 
 
 def doctor(json: Json = False) -> None:
@@ -20,23 +17,6 @@ def doctor(json: Json = False) -> None:
     """
     with progress("checking") as advance:
         state = installation(advance)
-    deliver(Diagnosis(state=state), as_json=json)
+    deliver(Listing(parts=state.blocks(), content=state.object()), as_json=json)
     if not state.healthy:
         raise typer.Exit(1)
-
-
-@answer
-class Diagnosis(Answer):
-    """State of an installation."""
-
-    is_lookup: ClassVar[bool] = True
-
-    state: Installation
-
-    def blocks(self) -> Sequence[Block]:
-        """Sections of the state, each missing part with its remedy, and the verdict."""
-        return self.state.blocks()
-
-    def object(self) -> dict[str, Any]:
-        """Same as an object."""
-        return self.state.object()

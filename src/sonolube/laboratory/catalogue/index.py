@@ -4,11 +4,12 @@ The index is a database beside the folders of runs; the folders are the truth, a
 """
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 from sonolube.errors import InvalidInput, UnknownName
@@ -23,41 +24,25 @@ if TYPE_CHECKING:
 
 Range = tuple[float, float]
 
-QUERY_KEYS: Final = ("material", "load", "speed", "since", "until", "tag", "text", "outcome")
-"""Conditions by which runs are searched."""
+RunQuery = tuple[tuple[str, tuple[Any, ...]], ...]
+"""Conditions that a run must meet, all of them: each in SQL, with its values."""
 
 _TOLERANCE: Final = 0.01  # of a load or speed that is no range
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class RunQuery:
-    """Conditions that a run must meet, all of them.
-
-    Parameters
-    ----------
-    materials : tuple of str
-        Of pin or disc, by a part of the name.
-    normal_load : (float, float) or None
-        Lowest and highest. [N]
-    sliding_speed : (float, float) or None
-        Lowest and highest. [m/s]
-    since, until : float or None
-        Of the begin, in s since 1970.
-    tags : tuple of str
-    texts : tuple of str
-        Each found anywhere in title, facts, protocol and notes.
-    outcome : str
-        Empty for any.
-    """
-
-    materials: tuple[str, ...] = ()
-    normal_load: Range | None = None
-    sliding_speed: Range | None = None
-    since: float | None = None
-    until: float | None = None
-    tags: tuple[str, ...] = ()
-    texts: tuple[str, ...] = ()
-    outcome: str = ""
+_WITHIN: Final = "folder IN (SELECT folder FROM settings WHERE quantity = ? AND value BETWEEN ? AND ?)"
+_CONDITIONS: Final[Mapping[str, tuple[str, Callable[[str], tuple[Any, ...]]]]] = MappingProxyType(
+    {
+        "material": ("(instr(pin, ?) OR instr(disc, ?))", lambda text: (text.casefold(), text.casefold())),
+        "load": (_WITHIN, lambda text: ("load", *_range(text, unit="N", name="load"))),
+        "speed": (_WITHIN, lambda text: ("speed", *_range(text, unit="m/s", name="speed"))),
+        "since": ("begun >= ?", lambda text: (_time(text, name="since"),)),
+        "until": ("begun < ?", lambda text: (_time(text, name="until"),)),
+        "tag": ("instr(tags, ?)", lambda text: (f",{text.strip().casefold()},",)),
+        "text": ("instr(text, ?)", lambda text: (text.casefold(),)),
+        "outcome": ("? IN ('', outcome)", lambda text: (text,)),
+    }
+)
+QUERY_KEYS: Final = tuple(_CONDITIONS)
+"""Conditions by which runs are searched."""
 
 
 def query_from(values: Mapping[str, Sequence[str]]) -> RunQuery:
@@ -84,23 +69,11 @@ def query_from(values: Mapping[str, Sequence[str]]) -> RunQuery:
             raise UnknownName.among(QUERY_KEYS, kind="condition of runs", name=key)
         if len(texts) > 1 and key not in ("material", "tag", "text"):
             raise InvalidInput(f"{key} is given {len(texts)} times; give it once")
-    one = {key: texts[0] for key, texts in values.items() if texts}
-    return RunQuery(
-        materials=tuple(values.get("material", ())),
-        normal_load=_range(one.get("load"), unit="N", name="load"),
-        sliding_speed=_range(one.get("speed"), unit="m/s", name="speed"),
-        since=_time(one.get("since"), name="since"),
-        until=_time(one.get("until"), name="until"),
-        tags=tuple(values.get("tag", ())),
-        texts=tuple(values.get("text", ())),
-        outcome=one.get("outcome", ""),
-    )
+    return tuple((term, read(text)) for key, (term, read) in _CONDITIONS.items() for text in values.get(key, ()))
 
 
-def _range(text: str | None, *, unit: str, name: str) -> Range | None:
+def _range(text: str, *, unit: str, name: str) -> Range:
     """Range of a text such as 3N..6N, 3N.., or 5N, which allows one percent."""
-    if text is None:
-        return None
     low, dots, high = (part.strip() for part in text.partition(".."))
     if not dots:
         value = to_si(text, unit=unit, name=name)
@@ -114,10 +87,8 @@ def _range(text: str | None, *, unit: str, name: str) -> Range | None:
     return found
 
 
-def _time(text: str | None, *, name: str) -> float | None:
+def _time(text: str, *, name: str) -> float:
     """Time of a date, in UTC where it names no zone. [s]"""
-    if text is None:
-        return None
     try:
         found = datetime.fromisoformat(text.strip())
         return (found if found.tzinfo else found.replace(tzinfo=UTC)).timestamp()
@@ -159,7 +130,7 @@ class FoundRuns:
     caveats: tuple[str, ...]
 
 
-def query_runs(parent: Path, query: RunQuery | None = None) -> FoundRuns:
+def query_runs(parent: Path, query: RunQuery = ()) -> FoundRuns:
     """Runs in a folder that meet a query; the index is brought up to date first.
 
     Parameters
@@ -179,16 +150,17 @@ def query_runs(parent: Path, query: RunQuery | None = None) -> FoundRuns:
     """
     folders = run_folders(parent)
     try:
-        return _found(parent, folders, query or RunQuery(), parent / CATALOGUE)
+        return _found(parent, folders, query, parent / CATALOGUE)
     except InvalidInput as failure:  # such as a full disk: the folders are the truth
-        found = _found(parent, folders, query or RunQuery(), None)
+        found = _found(parent, folders, query, None)
         return replace(found, caveats=(f"listed without an index: {failure}", *found.caveats))
 
 
 def _found(parent: Path, folders: list[Path], query: RunQuery, index: Path | None) -> FoundRuns:
     """Runs that meet a query, by an index that is brought up to date; by one in memory where it is None."""
     caveats: list[str] = []
-    condition, values = _condition(query)
+    condition = " WHERE " + " AND ".join(term for term, _ in query) if query else ""
+    values = [value for _, of_term in query for value in of_term]
     with _opened(index, caveats) as connection:
         _refresh(connection, folders, caveats)
         (total,) = connection.execute("SELECT count(*) FROM runs").fetchone()
@@ -300,20 +272,3 @@ def _entry(parent: Path, text: str) -> CatalogueEntry:
     summary |= {"folder": parent / summary["folder"], "channels": tuple(summary["channels"])}
     content |= {name: tuple(content[name]) for name in ("tags", "normal_loads", "sliding_speeds")}
     return CatalogueEntry(**content, summary=RunSummary(**summary), text="")
-
-
-def _condition(query: RunQuery) -> tuple[str, list[Any]]:
-    """Condition of SQL with its values."""
-    within = "folder IN (SELECT folder FROM settings WHERE quantity = ? AND value BETWEEN ? AND ?)"
-    ranges = (("load", query.normal_load), ("speed", query.sliding_speed))
-    moments = (("begun >= ?", query.since), ("begun < ?", query.until))
-    terms: list[tuple[str, tuple[Any, ...]]] = [
-        *(("(instr(pin, ?) OR instr(disc, ?))", (each.casefold(),) * 2) for each in query.materials),
-        *((within, (setting, *limits)) for setting, limits in ranges if limits is not None),
-        *((comparison, (moment,)) for comparison, moment in moments if moment is not None),
-        *(("instr(tags, ?)", (f",{tag.strip().casefold()},",)) for tag in query.tags),
-        *(("instr(text, ?)", (words.casefold(),)) for words in query.texts),
-        *([("outcome = ?", (query.outcome,))] if query.outcome else []),
-    ]
-    condition = " WHERE " + " AND ".join(term for term, _ in terms) if terms else ""
-    return condition, [value for _, values in terms for value in values]

@@ -1,9 +1,4 @@
-from .daqmx_acquisition import (
-    DaqmxAcquisition as DaqmxAcquisition,
-    LinearScale as LinearScale,
-    SensorScale as SensorScale,
-    TabulatedScale as TabulatedScale,
-)
+from .daqmx_acquisition import DaqmxAcquisition as DaqmxAcquisition, SensorScale as SensorScale
 from .daqmx_library import DaqmxGuard as DaqmxGuard
 from .daqmx_output import DaqmxDrive as DaqmxDrive, DaqmxMotor as DaqmxMotor
 from .device_map import (

@@ -1,12 +1,11 @@
 """Analogue inputs by NI-DAQmx: sampled by the clock of the device, read block by block, scaled to quantities in SI."""
 
 import csv
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from math import ceil
 from types import MappingProxyType
-from typing import Annotated, Any, ClassVar, Final, Literal, Protocol, Self
+from typing import Annotated, Any, ClassVar, Final, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,68 +24,12 @@ Floats = NDArray[np.float64]
 _MAX_POINTS = 10_000
 
 
-class SensorScale(Protocol):
-    """Relation of the voltage of an input to a quantity."""
-
-    def values(self, voltages: Floats) -> Floats:
-        """Values in SI of voltages in V."""
-
-    def reach(self, voltage: float) -> tuple[float, float]:
-        """Lowest and highest value within plus and minus a voltage."""
+SensorScale = Callable[[Floats], Floats]
+"""Monotonic relation of the voltage of an input to a quantity: values in SI of voltages in V."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class LinearScale:
-    """Value as gain times voltage plus offset.
-
-    Parameters
-    ----------
-    gain : float
-        SI unit of the quantity per V.
-    offset : float
-        In SI.
-    """
-
-    gain: float
-    offset: float = 0.0
-
-    def values(self, voltages: Floats) -> Floats:
-        """Values in SI of voltages in V."""
-        return self.gain * voltages + self.offset
-
-    def reach(self, voltage: float) -> tuple[float, float]:
-        """Lowest and highest value within plus and minus a voltage."""
-        ends = (self.gain * voltage + self.offset, -self.gain * voltage + self.offset)
-        return min(ends), max(ends)
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class TabulatedScale:
-    """Value between measured points, linear from one to the next; beyond them that of the last point, as saturated.
-
-    Parameters
-    ----------
-    voltages : ndarray, shape (points,)
-        Increasing, in V.
-    readings : ndarray, shape (points,)
-        In SI.
-    """
-
-    voltages: Floats
-    readings: Floats
-
-    def values(self, voltages: Floats) -> Floats:
-        """Values in SI of voltages in V."""
-        return np.interp(voltages, self.voltages, self.readings)
-
-    def reach(self, voltage: float) -> tuple[float, float]:
-        """Lowest and highest value of the points within plus and minus a voltage."""
-        ends = self.values(np.clip(self.voltages, -voltage, voltage))
-        return float(ends.min()), float(ends.max())
-
-
-def tabulated_scale(text: str, *, quantity: str, unit: str | None = None) -> TabulatedScale:
-    """Scale of the text of a calibration file."""
+def tabulated_scale(text: str, *, quantity: str, unit: str | None = None) -> SensorScale:
+    """Scale of the text of a calibration file, linear between its points and saturated beyond them."""
     rows = [[cell.strip() for cell in row] for row in csv.reader(text.splitlines()) if row]
     if not rows or rows[0] != ["voltage", quantity]:
         raise InvalidInput(f"line 1: expected voltage,{quantity}")
@@ -99,7 +42,7 @@ def tabulated_scale(text: str, *, quantity: str, unit: str | None = None) -> Tab
         raise InvalidInput("the voltages must increase from line to line")
     if abs(np.sign(np.diff(readings)).sum()) != len(readings) - 1:
         raise InvalidInput("the readings must rise or fall from line to line: one reading has one voltage")
-    return TabulatedScale(voltages=voltages, readings=readings)
+    return lambda given: np.interp(given, voltages, readings)
 
 
 def _point(row: list[str], unit: str, line: int) -> tuple[float, float]:
@@ -164,12 +107,12 @@ class AnalogueInputEntry(ChannelEntry):
         """Scale of the sensor, by the texts of calibrations."""
         if self.calibration is None:
             gain, offset = si_gain(self.gain or "", self.offset, unit=self.si_unit)
-            return LinearScale(gain=gain, offset=offset)
+            return lambda voltages: gain * voltages + offset
         return tabulated_scale(files[self.calibration], quantity=self.kind, unit=self.si_unit)
 
     def ranged(self, scale: SensorScale, *, sample_rate: float | None) -> Channel:
         """Channel with the range of sensor and input."""
-        lowest, highest = scale.reach(self.input_range)
+        lowest, highest = sorted(scale(np.array([-self.input_range, self.input_range])).tolist())
         return self.channel(lowest=lowest, highest=highest, sample_rate=sample_rate)
 
 
@@ -317,7 +260,7 @@ class DaqmxAcquisition:
                 part = values[start : start + self._most]
                 part[:] = self._voltages(len(part)).T
         for column, scale in zip(values.T, self._scales, strict=True):
-            column[:] = scale.values(column)
+            column[:] = scale(column)
         return Block(first_sample=first, sample_rate=self._sample_rate, values=values)
 
     def stop(self) -> None:

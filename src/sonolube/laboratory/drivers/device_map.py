@@ -21,8 +21,7 @@ from sonolube.laboratory.devices import DeviceError, Devices
 from sonolube.laboratory.drivers.daqmx_library import DRIVER_REMEDY, daqmx_errors, daqmx_library
 from sonolube.laboratory.drivers.driver_table import MapEntries
 from sonolube.laboratory.drivers.entry import AcquisitionEntry, DriverEntry
-from sonolube.laboratory.reservation import reserved
-from sonolube.laboratory.set_points import highest_of_steps, impossibilities
+from sonolube.laboratory.run_plan import highest_of_steps, impossibilities, reserved
 from sonolube.text.toml_text import text_of, toml_content
 from sonolube.text.units import format_si
 
@@ -52,11 +51,6 @@ class DeviceMap:
     def extras(self) -> tuple[str, ...]:
         """Optional parts of the installation that it needs, as in `EXTRAS`."""
         return tuple(sorted({extra for part in self.entries.parts for extra in part.extras}))
-
-    @property
-    def frequency_maximum(self) -> float:
-        """Of the drive. [Hz]"""
-        return self.entries.drive.highest_frequency
 
     def devices(self) -> Devices:
         """Devices of the rig; nothing is connected yet.
@@ -258,7 +252,7 @@ def unfulfilled(device_map: DeviceMap, protocol: Protocol) -> tuple[str, ...]:
 
 def _beyond(device_map: DeviceMap, points: Sequence[SetPoint]) -> Iterator[tuple[str, str, float, str]]:
     """Step, kind, value and text of frequencies and sample rates beyond the devices of a map."""
-    highest = device_map.frequency_maximum
+    highest = device_map.entries.drive.highest_frequency
     further = device_map.entries.acquisitions.values()
     beside = {each.name for entry in further for each in entry.channel_entries}
     total = device_map.entries.acquisition.total_rate_maximum

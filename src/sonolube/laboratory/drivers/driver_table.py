@@ -223,29 +223,26 @@ class MapEntries(Table):
         return tuple(each.guarded_output for each in (self.drive, self.motor) if each.guarded_output is not None)
 
     @model_validator(mode="after")
-    def _require_different_outputs(self) -> Self:
+    def _require_consistent(self) -> Self:
         drive, motor = self.drive, self.motor
         if drive.reserved_as == motor.reserved_as and drive.where == motor.where:
             raise ValueError(f"drive and motor both have the output {drive.where}")
-        return self
-
-    @model_validator(mode="after")
-    def _require_guarded(self) -> Self:
         if self.guard is not None:
             self.guard.require_use(self.guarded)
+        self._require_clocks()
+        self._require_different_channels()
         return self
 
-    @model_validator(mode="after")
-    def _require_clocks(self) -> Self:
+    def _require_clocks(self) -> None:
+        """Raise where an acquisition has no clock, or one too many."""
         if self.acquisition.own_rate is not None:
             raise ValueError("acquisition: protocols tell its sample rate; one of its own belongs below acquisitions")
         for name, entry in self.acquisitions.items():
             if entry.own_rate is None:
                 raise ValueError(f"acquisitions.{name}: needs sample_rate, which no protocol tells")
-        return self
 
-    @model_validator(mode="after")
-    def _require_different_channels(self) -> Self:
+    def _require_different_channels(self) -> None:
+        """Raise where two acquisitions are one device, or two channels have one name."""
         places, devices = dict[str, str](), dict[str, str]()
         for place, entry in self.all_inputs.items():
             other = devices.setdefault(entry.reserved_as, place)
@@ -257,7 +254,6 @@ class MapEntries(Table):
                     among = "stands twice among the channels" if first == place else f"is one of {first} too"
                     raise ValueError(f"{place}: name {channel.name} {among}")
                 places[channel.name] = place
-        return self
 
 
 def _listed(names: Any) -> str:

@@ -9,6 +9,7 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from copy import copy
 from typing import Annotated, Any, ClassVar, Final, Literal, TypeVar
 
 from pydantic import Field
@@ -103,13 +104,9 @@ class VisaConnection:
 
     def another(self) -> "VisaConnection":
         """Further connection to the same instrument, which waits for no call of this one."""
-        return VisaConnection(
-            name=self.name,
-            resource=self._resource,
-            library=self._library,
-            termination=self._termination,
-            baud_rate=self._baud_rate,
-        )
+        further = copy(self)
+        further._line, further._is_barred = None, False
+        return further
 
     def open(self) -> None:
         """Open the connection, anew where it is open.
@@ -232,9 +229,10 @@ class VisaEntry(Table):
         """Canonical name of the instrument or port."""
         return visa_resource(self.resource)
 
-    def line(self, kind: str) -> VisaConnection:
+    def line(self, kind: str, **serial: Any) -> VisaConnection:
         """Connection, not open, to an instrument of a kind."""
-        return VisaConnection(name=f"{kind} {self.resource}", resource=self.resource, library=self.visa_library)
+        name = f"{kind} {self.resource}"
+        return VisaConnection(name=name, resource=self.resource, library=self.visa_library, **serial)
 
 
 class VisaLineEntry(VisaEntry):
@@ -243,15 +241,10 @@ class VisaLineEntry(VisaEntry):
     baud_rate: Annotated[int, Field(ge=50, le=4_000_000)] | None = None
     termination: Literal["CR", "LF", "CRLF"] = "LF"
 
-    def line(self, kind: str) -> VisaConnection:
+    def line(self, kind: str, **serial: Any) -> VisaConnection:
         """Connection, not open, to an instrument of a kind."""
-        return VisaConnection(
-            name=f"{kind} {self.resource}",
-            resource=self.resource,
-            library=self.visa_library,
-            termination=TERMINATIONS[self.termination],
-            baud_rate=self.baud_rate,
-        )
+        own = {"termination": TERMINATIONS[self.termination], "baud_rate": self.baud_rate}
+        return super().line(kind, **own | serial)
 
 
 class SwitchedLine(ABC):

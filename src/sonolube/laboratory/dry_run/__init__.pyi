@@ -4,7 +4,6 @@ from .record import (
     DryRun as DryRun,
     Heating as Heating,
     PlannedPoint as PlannedPoint,
-    PlannedRecording as PlannedRecording,
     drive_load as drive_load,
 )
 from .report import (

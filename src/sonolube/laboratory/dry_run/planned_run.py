@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cache, partial
 from itertools import pairwise
 from math import isnan, pi
 
@@ -20,19 +21,10 @@ from sonolube.facts.protocol import (
     flattened,
     step_at,
 )
-from sonolube.laboratory.dry_run.record import (
-    OFF,
-    DriveLoad,
-    DryRun,
-    Heating,
-    PlannedPoint,
-    PlannedRecording,
-    drive_load,
-    heating_over,
-    rubbed_contact,
-)
+from sonolube.laboratory.dry_run.record import DryRun, Heating, PlannedPoint, drive_load, heating_over, rubbed_contact
 from sonolube.laboratory.dry_run.report import caveats_of, refusals_of
 from sonolube.laboratory.heating_assumptions import HeatingAssumptions as HeatingAssumptions
+from sonolube.laboratory.run_plan import drive_setting
 from sonolube.laboratory.supervision import LATE
 from sonolube.rig import OperatingPoints, Rig, operating_points, thermal_solid
 from sonolube.rig.driven_rig import actuator_capacitance
@@ -90,7 +82,6 @@ def dry_run(
         protocol=protocol,
         rig_title="" if rig is None else rig.title,
         points=points,
-        recordings=_recordings(settings),
         duration=settings[-1].time,
         prompt_time=sum(PROMPT_DURATIONS[prompt.task] for prompt in prompts),
         heating=heated,
@@ -136,21 +127,6 @@ def _sliding_speed(point: SetPoint, metadata: Metadata) -> float | None:
     if point.rotation_speed == 0:
         return 0.0
     return None if metadata.groove_diameter is None else pi * metadata.groove_diameter * point.rotation_speed
-
-
-def _recordings(settings: Sequence[SetPoint]) -> tuple[PlannedRecording, ...]:
-    """Recordings in the order of time."""
-    return tuple(
-        PlannedRecording(
-            step=point.step,
-            start=point.time,
-            duration=(point.recorded_until or point.time) - point.time,
-            sample_rate=point.sample_rate or 0.0,
-            channels=point.channels,
-        )
-        for point in settings
-        if point.kind == "acquire"
-    )
 
 
 def _with_vibration(
@@ -217,15 +193,8 @@ def _with_loads(points: Sequence[PlannedPoint], capacitance: float | None, notes
     if capacitance is None:
         notes.caveats.append("actuator.capacitance is missing in the rig file: current, power and heat are left out")
         return tuple(points)
-    known: dict[tuple[object, ...], DriveLoad] = {}
-    loaded = []
-    for point in points:
-        at = point.setting
-        key = (at.voltage_peak_to_peak, at.voltage_offset, at.frequency, at.waveform)
-        if key not in known:
-            known[key] = OFF if at.frequency is None else drive_load(at, capacitance=capacitance)
-        loaded.append(replace(point, load=known[key]))
-    return tuple(loaded)
+    load_of = cache(partial(drive_load, capacitance=capacitance))
+    return tuple(replace(point, load=load_of(drive_setting(point.setting))) for point in points)
 
 
 def _heating(

@@ -12,8 +12,8 @@ import numpy as np
 
 from sonolube.checks import Floats, require_positive
 from sonolube.facts.protocol import Protocol, SetPoint
+from sonolube.laboratory.devices import DriveSetting
 from sonolube.laboratory.heating_assumptions import HeatingAssumptions, capacitive_load
-from sonolube.laboratory.set_points import drive_setting
 from sonolube.models.actuator import linear_amplifier_power
 from sonolube.models.thermal import EllipticSource, HeatedContact, ThermalNetwork, ThermalSolid
 from sonolube.models.thermal.bulk import network_rise
@@ -42,16 +42,13 @@ class DriveLoad:
     capacitive_power: float
 
 
-OFF = DriveLoad(peak_current=0.0, slew_rate=0.0, actuator_power=0.0, capacitive_power=0.0)
-"""Load of a drive that is off."""
-
-
-def drive_load(point: SetPoint, *, capacitance: float) -> DriveLoad:
-    r"""Load of a set point on the amplifier.
+def drive_load(setting: DriveSetting | None, *, capacitance: float) -> DriveLoad:
+    r"""Load of a drive setting on the amplifier.
 
     Parameters
     ----------
-    point : SetPoint
+    setting : DriveSetting or None
+        None for off.
     capacitance : float
         Capacitance of the actuator. [F]
 
@@ -76,13 +73,12 @@ def drive_load(point: SetPoint, *, capacitance: float) -> DriveLoad:
     The current of the motion, largest at resonance, comes on top.
     """
     require_positive(capacitance=capacitance)
-    setting = drive_setting(point)
     if setting is None:
-        return OFF
+        return DriveLoad(peak_current=0.0, slew_rate=0.0, actuator_power=0.0, capacitive_power=0.0)
     need = capacitive_load(setting, capacitance=capacitance)
     power = linear_amplifier_power(
         capacitance=capacitance,
-        voltage_maximum=point.voltage_maximum,
+        voltage_maximum=setting.voltage_maximum,
         voltage_peak_to_peak=setting.voltage_peak_to_peak,
         frequency=setting.frequency,
     )
@@ -157,34 +153,10 @@ class PlannedPoint:
     friction_force: float | None = None
     load: DriveLoad | None = None
 
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class PlannedRecording:
-    """Recording of a protocol.
-
-    Parameters
-    ----------
-    step : str
-        Place of its step.
-    start : float
-        Time at which it starts, in s.
-    duration : float
-        [s]
-    sample_rate : float
-        Of each channel. [Hz]
-    channels : tuple of str
-    """
-
-    step: str
-    start: float
-    duration: float
-    sample_rate: float
-    channels: tuple[str, ...]
-
     @property
-    def samples(self) -> int:
-        """Number of samples of all channels."""
-        return round(self.duration * self.sample_rate) * len(self.channels)
+    def recorded(self) -> float:
+        """Time that is recorded from here on. [s]"""
+        return (self.setting.recorded_until or self.setting.time) - self.setting.time
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -198,7 +170,6 @@ class DryRun:
         Empty without a rig.
     points : tuple of PlannedPoint
         One a set point, the end included.
-    recordings : tuple of PlannedRecording
     duration : float
         Time without prompts. [s]
     prompt_time : float
@@ -215,7 +186,6 @@ class DryRun:
     protocol: Protocol
     rig_title: str
     points: tuple[PlannedPoint, ...]
-    recordings: tuple[PlannedRecording, ...]
     duration: float
     prompt_time: float
     heating: Heating | None = None
@@ -224,9 +194,15 @@ class DryRun:
     assumptions: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
 
     @property
+    def recordings(self) -> list[PlannedPoint]:
+        """Points at which a recording begins."""
+        return [point for point in self.points if point.setting.kind == "acquire"]
+
+    @property
     def samples(self) -> int:
         """Number of samples of all recordings and channels."""
-        return sum(recording.samples for recording in self.recordings)
+        begins = ((point.recorded, point.setting) for point in self.recordings)
+        return sum(round(lasts * (at.sample_rate or 0.0)) * len(at.channels) for lasts, at in begins)
 
     @property
     def bytes(self) -> int:

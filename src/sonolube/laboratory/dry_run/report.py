@@ -15,7 +15,7 @@ from sonolube.design.control import Amplifier
 from sonolube.facts.protocol import Check, step_at
 from sonolube.laboratory.dry_run.record import DryRun, PlannedPoint
 from sonolube.laboratory.interlocks import drive_sampling, recorded_channels
-from sonolube.laboratory.set_points import SPEED_CHANNEL, speed_checks
+from sonolube.laboratory.run_plan import SPEED_CHANNEL, speed_checks
 from sonolube.text.units import format_si
 
 STATIC_FRICTION_FACTOR = 1.35
@@ -198,8 +198,7 @@ def _facts(point: PlannedPoint) -> Iterator[str]:
     if point.friction_force:
         yield format_si(point.friction_force, "N", digits=3)
     if at.channels and at.kind == "acquire" and at.sample_rate is not None:
-        lasts = (at.recorded_until or at.time) - at.time
-        yield f"{', '.join(at.channels)} at {format_si(at.sample_rate, 'Hz')} for {clock(lasts)}"
+        yield f"{', '.join(at.channels)} at {format_si(at.sample_rate, 'Hz')} for {clock(point.recorded)}"
     if point.content:
         yield point.content
 
@@ -269,7 +268,7 @@ def dry_run_chart(found: DryRun) -> Chart:
         is_first = not panels
         marks: list[Part] = []
         if is_first and found.recordings:
-            start, lasts = (np.array([getattr(each, of) for each in found.recordings]) for of in ("start", "duration"))
+            start, lasts = np.array([(each.setting.time, each.recorded) for each in found.recordings]).T
             marks.append(
                 Zone(first=start / scale, last=(start + lasts) / scale, label="recorded", colour=2, opacity=0.25)
             )

@@ -9,10 +9,8 @@ from typing import TYPE_CHECKING
 from sonolube.errors import InvalidInput
 from sonolube.laboratory.block import Block, Channel
 from sonolube.laboratory.records.documents import EXIT_STATUS, DocumentLog, read_documents
-from sonolube.laboratory.records.open_part import OpenPart, RunClock
-from sonolube.laboratory.records.raw_blocks import PartClock, RawPart, raw_header
-from sonolube.laboratory.records.recorded_part import recorded_part
-from sonolube.laboratory.records.recording_files import write_netcdf_recording
+from sonolube.laboratory.records.raw_blocks import PartClock, RawPart, raw_header, scan_raw
+from sonolube.laboratory.records.recovery import OpenPart, RunClock, write_missing
 from sonolube.laboratory.records.run import RunSummary, run_summary
 from sonolube.laboratory.records.run_folder import (
     CLOCK_NAME,
@@ -22,10 +20,9 @@ from sonolube.laboratory.records.run_folder import (
     TRUTH,
     Facts,
     RunFacts,
-    keep_digests,
     make_run_folder,
     raw_parts,
-    recording_path,
+    raw_path,
 )
 from sonolube.operating_system import remove_file
 from sonolube.storage.files import locked_folder
@@ -89,8 +86,7 @@ class RunRecorder:
         self._log = DocumentLog(folder)
         self._log.start(known)
         self._parts: list[OpenPart] = []  # also those that were ended
-        self._main: OpenPart | None = None
-        self._beside: dict[str, OpenPart] = {}
+        self._open: dict[str, OpenPart] = {}  # by the names of their clocks, empty for that of the run
         self._failure = ""
         self._summary: RunSummary | None = None
 
@@ -109,9 +105,9 @@ class RunRecorder:
             If a part is being recorded, the channels are no channels, or the disk is full.
         """
         self._require_running()
-        if self._main is not None:
+        if "" in self._open:
             raise InvalidInput("a part of the recording has begun already; end it first")
-        self._main = self._begun(RawPart(channels=tuple(channels), sample_rate=sample_rate, begun=self._clock.now()))
+        self._begin(RawPart(channels=tuple(channels), sample_rate=sample_rate, begun=self._clock.now()))
 
     def begin_beside(
         self, clock: str, channels: Sequence[Channel], *, sample_rate: float, first: int, ago: float, uncertainty: float
@@ -138,48 +134,57 @@ class RunRecorder:
             As `begin`; if no part is being recorded beside it, or the name of the clock is no plain one.
         """
         self._require_running()
-        if self._main is None or clock in self._beside or not CLOCK_NAME.fullmatch(clock):
+        main = self._open.get("")
+        if main is None or clock in self._open or not CLOCK_NAME.fullmatch(clock):
             raise InvalidInput(f"a part of the clock {clock!r} needs one of the run, and no other of its own")
         begun = self._clock.now() - ago
-        offset = begun - self._main.part.begun
-        told = PartClock(name=clock, part=self._main.number, offset=offset, uncertainty=uncertainty, first_sample=first)
-        part = RawPart(channels=tuple(channels), sample_rate=sample_rate, begun=begun, clock=told)
-        self._beside[clock] = self._begun(part)
+        offset = begun - main.part.begun
+        told = PartClock(name=clock, part=main.number, offset=offset, uncertainty=uncertainty, first_sample=first)
+        self._begin(RawPart(channels=tuple(channels), sample_rate=sample_rate, begun=begun, clock=told))
 
-    def append(self, block: Block) -> None:
+    def append(self, block: Block, *, clock: str = "") -> None:
         """Keep a block; it is in the hands of the operating system when this returns.
 
         Parameters
         ----------
         block : Block
             With samples later than those before; where some are missing between, the gap is noted.
+        clock : str
+            Name of its clock; empty for that of the run.
 
         Raises
         ------
         InvalidInput
             If the disk is full, the shape is wrong, or the sample counter goes back. What was kept before stays.
         """
-        self._append(self._main, block, {})
-        self._watch_clock(block.first_sample)
+        part = self._open.get(clock)
+        if part is None:
+            raise InvalidInput("no part of the recording has begun; begin it before blocks are appended")
+        part.require_fitting(block)
+        told = {"clock": clock} if clock else {}
+        with self._failing():
+            part.append(block, lambda first, facts: self._note("gap", first, {**facts, **told}))
+        if not clock:
+            self._watch_clock(block.first_sample)
 
-    def append_beside(self, clock: str, block: Block) -> None:
-        """Keep a block of another clock, as `append`."""
-        self._append(self._beside.get(clock), block, {"clock": clock})
-
-    def end(self) -> None:
+    def end(self, *, clock: str = "") -> None:
         """End the part of the recording; harmless where none has begun.
+
+        Parameters
+        ----------
+        clock : str
+            Name of its clock; empty for that of the run.
 
         Raises
         ------
         InvalidInput
             If the disk is full.
         """
-        main, self._main = self._main, None
-        self._end(main)
-
-    def end_beside(self, clock: str) -> None:
-        """End the part of another clock, as `end`."""
-        self._end(self._beside.pop(clock, None))
+        part = self._open.pop(clock, None)
+        if part is not None:
+            with self._failing():
+                part.close()
+                part.describe(read_documents(self.folder))
 
     def note(self, kind: str, *, sample: int | None = None, **facts: str | float) -> None:
         """Keep what happened: set points, states, prompts, trips.
@@ -241,8 +246,10 @@ class RunRecorder:
         if outcome not in EXIT_STATUS:
             raise InvalidInput(f"outcome must be one of {', '.join(EXIT_STATUS)}, got {outcome!r}")
         with self._locks:
-            beside = [partial(self.end_beside, clock) for clock in self._beside]
-            closing: list[Callable[[], object]] = [*beside, self.end, self._write_recordings]
+            ends = [
+                partial(self.end, clock=clock) for clock in sorted(self._open, key="".__eq__)
+            ]  # that of the run last
+            closing: list[Callable[[], object]] = [*ends, self._write_recordings]
             for close in closing:
                 with suppress(InvalidInput):  # the reason is kept, and the run failed
                     close()
@@ -257,39 +264,18 @@ class RunRecorder:
         self._summary = run_summary(self.folder)
         return self._summary
 
-    def _begun(self, part: RawPart) -> OpenPart:
-        """Part that has begun."""
+    def _begin(self, part: RawPart) -> None:
+        """Begin a part."""
         raw_header(part)  # refuses what is no part, which is no failure
         with self._failing():
             self._parts.append(OpenPart(self.folder, len(self._parts) + 1, part, self._log))
-        return self._parts[-1]
-
-    def _append(self, part: OpenPart | None, block: Block, told: Mapping[str, str | float]) -> None:
-        """Keep a block of a part."""
-        if part is None:
-            raise InvalidInput("no part of the recording has begun; begin it before blocks are appended")
-        part.require_fitting(block)
-        with self._failing():
-            part.append(block, lambda first, facts: self._note("gap", first, {**facts, **told}))
-
-    def _end(self, part: OpenPart | None) -> None:
-        """End a part; harmless where there is none."""
-        if part is None:
-            return
-        with self._failing():
-            part.close()
-            part.describe(read_documents(self.folder))
+        self._open[part.clock_name] = self._parts[-1]
 
     def _write_recordings(self) -> None:
         """Write all parts as netCDF."""
-        documents, paths = read_documents(self.folder), list[Path]()
         with self._failing():
-            for number in raw_parts(self.folder):
-                part = recorded_part(self.folder, number, documents, facts=self._known.facts)
-                paths.append(recording_path(self.folder, number, part.clock_name))
-                if part.samples:
-                    write_netcdf_recording(part, self._known, paths[-1])
-            self._known = keep_digests(self.folder, self._known, paths)
+            parts = ((number, scan_raw(raw_path(self.folder, number))) for number in raw_parts(self.folder))
+            write_missing(self.folder, self._known, parts)
 
     def _note(self, kind: str, sample: int | None, facts: Mapping[str, str | float]) -> None:
         """Write an event."""

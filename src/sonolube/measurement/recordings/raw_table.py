@@ -1,17 +1,19 @@
 """Columns of a recording as a file reader returns them: labels and units of the file, before names and SI units.
 
-Columns of one label are chosen by their numbers; units are converted as instruments write them.
+Columns of one label are chosen by their numbers; units are converted as instruments write them (`written_units.toml`).
 """
 
 import re
+import tomllib
 import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from importlib.resources import files
 from pathlib import Path
 from types import MappingProxyType
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,35 +62,11 @@ def column_of_label(columns: Mapping[str, ColumnT], label: str, path: Path) -> C
 
 _FAULT_VALUE = "value 0.0 "
 
-# Spellings that differ from those of pint, as (factor, unit): pint reads rpm as an angular speed.
-_SPELLINGS = {
-    "newtons": (1.0, "N"),
-    "volts": (1.0, "V"),
-    "amps": (1.0, "A"),
-    "amperes": (1.0, "A"),
-    "seconds": (1.0, "s"),
-    "sec": (1.0, "s"),
-    "deg c": (1.0, "degC"),
-    "°c": (1.0, "degC"),
-    "celsius": (1.0, "degC"),
-    "rpm": (1 / 60, "1/s"),
-    "u/min": (1 / 60, "1/s"),
-    "1/min": (1 / 60, "1/s"),
-    "1": (1.0, ""),
-    "-": (1.0, ""),
-}
-
-# Second meanings, by the dimension of the channel: grams of a force are gram-force, those of an acceleration g.
-_OTHER_MEANINGS: dict[str, tuple[tuple[float, str], ...]] = {
-    "g": ((1e-4, "T"), (1.0, "gf"), (1.0, "g_0")),
-    "G": ((1e-4, "T"), (1.0, "g_0")),
-    "gauss": ((1e-4, "T"),),
-    "kg": ((1.0, "kgf"),),
-    "mg": ((1e-3, "gf"),),
-    "lb": ((1.0, "lbf"),),
-    "C": ((1.0, "degC"),),
-    "F": ((1.0, "degF"),),
-}
+_WRITTEN: dict[str, Any] = tomllib.loads(
+    files("sonolube.measurement.recordings").joinpath("written_units.toml").read_text(encoding="utf-8")
+)
+_SPELLINGS = {text: (float(factor), str(unit)) for text, (factor, unit) in _WRITTEN["spellings"].items()}
+_OTHER_MEANINGS = {text: tuple(map(tuple, meanings)) for text, meanings in _WRITTEN["other_meanings"].items()}
 
 
 def convert_to_si(values: Floats, *, written_unit: str, unit: str, name: str) -> Floats:

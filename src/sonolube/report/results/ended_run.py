@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from sonolube.facts.protocol import Protocol
-from sonolube.laboratory import RunResult, State
+from sonolube.laboratory import RunState, State
 from sonolube.laboratory.dry_run import DryRun, dry_run_cells, dry_run_lines, dry_run_sums
 from sonolube.laboratory.records import Observation, Run
 from sonolube.operating_system import quoted
@@ -61,7 +61,7 @@ _SAME_LOAD = 1e-6  # relative
 _MAX_SAMPLES = 10_000_000  # of a recording whose mean is computed
 
 
-def run_blocks(result: RunResult, run: Run, *, simulated: bool) -> list[Block]:
+def run_blocks(result: RunState, run: Run, *, simulated: bool) -> list[Block]:
     """Outcome, what was recorded, and the next command."""
     summary = run.summary
     mean = _mean_friction(run)
@@ -77,7 +77,7 @@ def run_blocks(result: RunResult, run: Run, *, simulated: bool) -> list[Block]:
     return [summary.title + (" (virtual)" if simulated else ""), Rows(rows), *after]
 
 
-def run_object(result: RunResult, run: Run, *, simulated: bool) -> dict[str, Any]:
+def run_object(result: RunState, run: Run, *, simulated: bool) -> dict[str, Any]:
     """Outcome, folder and recordings, for JSON."""
     summary = run.summary
     return {

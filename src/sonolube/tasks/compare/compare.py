@@ -5,7 +5,7 @@ from typing import Annotated, Any, Unpack
 
 from sonolube.measurement.run_columns import runs_help
 from sonolube.report import Drawing
-from sonolube.report.results import model_comparison as ranked_models, model_comparison as results
+from sonolube.report.results import model_comparison as results
 from sonolube.rig import FrictionPoint, Rig, friction_point
 from sonolube.tasks.answer import Answer, Block, Dataset, Table, answer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
@@ -159,7 +159,7 @@ def fit(
     known, table = optional_rig(rig), runs_of(runs, mapping)
     with stage("fitting") as advance:
         result = fit_runs(table, known, models=comparison.compared_models(model), advance=advance)
-    volts = None if known is None or "voltage_peak_to_peak" not in table else ranked_models.volts_per_amplitude(known)
+    volts = None if known is None or "voltage_peak_to_peak" not in table else results.volts_per_amplitude(known)
     return FitAnswer(fit=result, rig=known, volts_per_amplitude=volts, name=f"{file_stem(runs)}-fit")
 
 
@@ -178,16 +178,16 @@ class FitAnswer(Answer):
         scatter = "" if table.scatter is None else f", repeats scatter by {table.scatter:.3f}"
         return [
             f"{table.title}: {table.runs} runs under {len(table.conditions)} conditions{scatter}; errors of the ratio",
-            Table(("model", "k", "unseen", "fit", "AICc", ""), ranked_models.error_rows(self.fit)),
-            *ranked_models.parameter_lines(self.fit),
+            Table(("model", "k", "unseen", "fit", "AICc", ""), results.error_rows(self.fit)),
+            *results.parameter_lines(self.fit),
             f"  {self.fit.verdict}",
-            *(ranked_models.next_line(one, self.volts_per_amplitude) for one in self.fit.next_conditions),
-            *ranked_models.inapplicable_lines(self.fit),
+            *(results.next_line(one, self.volts_per_amplitude) for one in self.fit.next_conditions),
+            *results.inapplicable_lines(self.fit),
         ]
 
     def object(self) -> dict[str, Any]:
         """Models with errors, parameters and predictions, the verdict and the next conditions."""
-        return ranked_models.fit_object(self.fit)
+        return results.fit_object(self.fit)
 
     def caveats(self) -> Sequence[str]:
         """Runs that were left out or are copies, and the direction that is taken for the vibration."""

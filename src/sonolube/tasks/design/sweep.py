@@ -22,8 +22,7 @@ from sonolube.errors import InvalidInput
 from sonolube.models.dynamics.backend import usable_backend
 from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.report import Drawing, Page
-from sonolube.report.results.design import sweep as results, sweep as study_results
-from sonolube.report.results.design.sweep import failure_objects
+from sonolube.report.results.design import sweep as results
 from sonolube.report.results.record_object import amplitude_object, amplitude_rows, friction_model_text
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.storage.files import expect_files
@@ -111,7 +110,7 @@ class ParametricStudyAnswer(Answer):
         points, load = self.study["status"].size, format_si(self.rig.normal_load, "N")
         return [
             f"{self.rig.title}, {load}, {points} points, {friction_model_text(self.rig)}",
-            Rows([*amplitude_rows(self.rig), *study_results.rows(self.study, self.of)]),
+            Rows([*amplitude_rows(self.rig), *results.rows(self.study, self.of)]),
             *[f"  without result: {count} of {points}: {reason}" for reason, count in self.failures().items()],
         ]
 
@@ -122,9 +121,9 @@ class ParametricStudyAnswer(Answer):
             "study": self.of,
             "friction_model": self.rig.friction_model.name,
             **amplitude_object(self.rig),
-            "least_friction": study_results.best_objects(self.study),
+            "least_friction": results.best_objects(self.study),
             "points": int(self.study["status"].size),
-            "without_result": failure_objects(self.failures()),
+            "without_result": results.failure_objects(self.failures()),
         }
 
     @property

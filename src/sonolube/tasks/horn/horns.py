@@ -21,7 +21,7 @@ from sonolube.models.fem import generate_mesh, medium_from_material, step_text
 from sonolube.models.fem.results.figures import mode_figure, shaped_surface
 from sonolube.models.fem.results.part_modes import longest_axis
 from sonolube.report import Drawing
-from sonolube.report.results.parts import horns as horn_face, horns as results
+from sonolube.report.results.parts import horns as results
 from sonolube.reproduction.chapter2.poisson_effect import face_friction_chart
 from sonolube.reproduction.chapter2.poisson_horn import FaceFriction, friction_on_face, transition_region
 from sonolube.reproduction.published_rigs import Horn
@@ -88,11 +88,11 @@ class FaceAnswer(Answer):
 
     def blocks(self) -> Sequence[Block]:
         """Node, regions, and the greatest motor force."""
-        return horn_face.face_blocks(self.horn, self.friction)
+        return results.face_blocks(self.horn, self.friction)
 
     def object(self) -> dict[str, Any]:
         """Node, limits of the transition region computed and measured, least friction ratio."""
-        return horn_face.face_object(self.horn, self.friction)
+        return results.face_object(self.horn, self.friction)
 
     def caveats(self) -> Sequence[str]:
         """A side of the face that drives nowhere."""

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Unpack
 from sonolube import identification
 from sonolube.errors import InvalidInput
 from sonolube.identification.decay_length.switch_table import is_switch_table
-from sonolube.laboratory.records.recording_views import switched_recording
+from sonolube.laboratory.records.recorded_part import switched_recording
 from sonolube.measurement.measured_runs import read_runs
 from sonolube.measurement.recordings.reader import read_recording
 from sonolube.report import Drawing

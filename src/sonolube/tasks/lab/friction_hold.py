@@ -9,8 +9,7 @@ from sonolube.errors import InvalidInput
 from sonolube.laboratory import RunControl, closed_loop, closed_loop as holds
 from sonolube.laboratory.drivers.device_map import ready_devices
 from sonolube.laboratory.records import Run, read_run
-from sonolube.laboratory.reservation import require_free
-from sonolube.laboratory.run_plan import RunPlan, begin_record
+from sonolube.laboratory.run_plan import RunPlan, begin_record, require_free
 from sonolube.laboratory.virtual_tribometer import virtual_tribometer
 from sonolube.models.actuator.drive import Drive
 from sonolube.report import Drawing

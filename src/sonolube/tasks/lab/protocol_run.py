@@ -12,13 +12,12 @@ from typing import Annotated, Any, Final, Literal, Unpack
 import sonolube.laboratory.dry_run as dry_runs
 from sonolube.errors import InvalidInput
 from sonolube.facts.protocol import Protocol, flattened, protocol_at, protocol_by_name_or_file
-from sonolube.laboratory import RunControl, RunResult, require_possible, run_protocol
+from sonolube.laboratory import RunControl, RunState, require_possible, run_protocol
 from sonolube.laboratory.devices import Devices
 from sonolube.laboratory.drivers.device_map import ready_devices
 from sonolube.laboratory.dry_run import DryRun, dry_run_chart
 from sonolube.laboratory.records import Run, export_run, read_run
-from sonolube.laboratory.reservation import require_free
-from sonolube.laboratory.run_plan import RunPlan, begin_record
+from sonolube.laboratory.run_plan import RunPlan, begin_record, require_free
 from sonolube.laboratory.runner import Operator
 from sonolube.laboratory.virtual_tribometer import GROOVE_DIAMETER, VirtualTribometer, virtual_tribometer
 from sonolube.report import Drawing
@@ -48,14 +47,14 @@ class RunAnswer(Answer):
 
     Parameters
     ----------
-    result : RunResult
+    result : RunState
     run : Run
         Read back from its folder.
     simulated : bool
     rig : Rig or None
     """
 
-    result: RunResult
+    result: RunState
     run: Run
     simulated: bool
     rig: Rig | None = None

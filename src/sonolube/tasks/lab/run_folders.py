@@ -108,9 +108,8 @@ def runs(
     for source in add:
         take_in(place, Path(source), facts=facts)
     one = {"load": load, "speed": speed, "since": since, "until": until, "outcome": outcome}
-    several = {"material": material, "tag": tag, "text": text}
     given: dict[str, Sequence[str]] = {key: [value] for key, value in one.items() if value is not None}
-    given |= {key: list(values) for key, values in several.items() if values}
+    given |= {"material": material, "tag": tag, "text": text}
     return FoundRunsAnswer(place=place, found=query_runs(place, query_from(given)))
 
 
@@ -143,7 +142,7 @@ class ShownRun(Answer):
         """Channels over time."""
         if not self.run.recordings:
             return {}
-        from sonolube.laboratory.records.recording_views import channels_chart
+        from sonolube.laboratory.records.recorded_part import channels_chart
         from sonolube.report import Drawing
 
         title = self.run.summary.title

@@ -1,8 +1,7 @@
-"""Tasks `materials`, `actuators` and `published`: tables of facts with their sources, and the answer of look-ups."""
+"""Tasks `materials`, `actuators` and `published`: tables of facts with their sources."""
 
-from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Annotated, Any, ClassVar
+from typing import Annotated
 
 from sonolube.facts import published as data
 from sonolube.facts.materials import material, material_classes, material_names
@@ -10,42 +9,9 @@ from sonolube.models.actuator import catalogue_actuator, catalogue_names
 from sonolube.report.blocks import Rows
 from sonolube.report.results import looked_up as results
 from sonolube.report.results.record_object import facts_dataset
-from sonolube.tasks.answer import Answer, Block, Dataset, answer
+from sonolube.tasks.answer import Listing
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.task import task
-
-
-@answer
-class Listing(Answer):
-    """Table of facts.
-
-    Parameters
-    ----------
-    parts : sequence of Block
-        For people.
-    content : dict
-        For JSON.
-    labelled : callable, optional
-        Returns the same as a dataset; the quantities and texts of the content where absent.
-    """
-
-    is_lookup: ClassVar[bool] = True
-
-    parts: Sequence[Block]
-    content: dict[str, Any]
-    labelled: "Callable[[], Dataset] | None" = None
-
-    def blocks(self) -> Sequence[Block]:
-        """Blocks as given."""
-        return self.parts
-
-    def object(self) -> dict[str, Any]:
-        """Object as given."""
-        return self.content
-
-    def dataset(self) -> Dataset:
-        """Table as a labelled dataset, with units."""
-        return super().dataset() if self.labelled is None else self.labelled()
 
 
 @task

@@ -7,7 +7,7 @@ from sonolube.facts.protocol import protocol_schema
 from sonolube.laboratory.drivers import device_map_schema
 from sonolube.report.blocks import Verbatim
 from sonolube.rig import rig_schema
-from sonolube.tasks.lookup.facts import Listing
+from sonolube.tasks.answer import Listing
 from sonolube.tasks.openapi import tasks_description
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.task import task
