@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from reliability import virtual_contact
+from tests.mode_files import write_universal_file
 
 from sonolube.laboratory import Block, Channel
 from sonolube.laboratory.records import new_run
@@ -32,6 +33,10 @@ SHEETS = {"--test-sheet": "FOLDER/sheet.toml", "--report": "OUT/page.html"}
 KNOWN = (
     *("--pin", "aluminium_2024", "--disc", "stainless_steel_316", "--load", "5N", "--speed", "0.2m/s"),
     *("--frequency", "20kHz", "--friction", "0.4"),
+)
+FOREIGN = (
+    *("--tip", "3", "--direction", "+x", "--port", "1", "--port", "2", "--force-per-volt", "12N/V"),
+    *("--clamped-capacitance", "4nF", "--quality-factor", "500", "--modal-mass", "1kg"),
 )
 _SHORT_PROTOCOL = """title = "short"
 source = "none"
@@ -267,6 +272,23 @@ MODES = {
             "100N/m",
         ),
         {"--contact": "back", "--body-mass": "2kg", "--body-stiffness": "200N/m", "--body-damping": "2N*s/m"},
+    ),
+    "modes of another program": Mode(
+        "modes",
+        ("--from", "FOLDER/bar.unv", *FOREIGN, "--length-unit", "mm", "--force-unit", "N"),
+        {
+            "--from": ("FOLDER/bar.unv", "FOLDER/lighter.unv"),
+            "--tip": "20,0,0mm",
+            "--direction": ("+x", "-x"),
+            "--port": "2",
+            "--force-per-volt": ("12N/V", "13N/V"),
+            "--clamped-capacitance": ("4nF", "5nF"),
+            "--quality-factor": ("500", "600"),
+            "--modal-mass": ("1kg", "2kg"),
+            "--length-unit": ("mm", "cm"),
+            "--force-unit": ("N", "kN"),
+            "--body-mass": "2kg",
+        },
     ),
     "impedance of a part": Mode(
         "impedance compute",
@@ -791,6 +813,12 @@ def write_inputs(place: Path) -> None:
         (place / name).mkdir()
         for scan in range(3):
             np.save(place / name / f"{scan}.npy", depth * (1 + 0.1 * scan) * valley)
+    bar = np.array([[0.0, 0, 0], [10, 0, 0], [20, 0, 0]])
+    shape = np.array([[[1.0, 0, 0], [0, 0, 0], [-1, 0.1, 0]], [[1.0, 0, 0], [-1, 0, 0], [1, 0, 0.2]]])
+    for name, mass in (("bar", 2e-3), ("lighter", 1e-3)):
+        write_universal_file(
+            place / f"{name}.unv", frequency=[2e4, 4e4], position=bar, shape=shape, mass=[mass, 0], damping=[1e-3, 0]
+        )
     (place / "catalogue.toml").write_text(
         '[mine]\ntitle = "T"\nkind = "stack"\nsource = "own"\nstroke = 2e-5\n'
         "stroke_voltage = 100.0\nblocked_force = 800.0\n"
