@@ -34,6 +34,10 @@ KNOWN = (
     *("--pin", "aluminium_2024", "--disc", "stainless_steel_316", "--load", "5N", "--speed", "0.2m/s"),
     *("--frequency", "20kHz", "--friction", "0.4"),
 )
+BOLTED = (
+    *("--set", "outer_radius=15mm", "--set", "inner_radius=6mm", "--set", "length=20mm", "--set", "rod_radius=4mm"),
+    *("--set", "back_length=30mm", "--set", "front_length=30mm"),
+)
 FOREIGN = (
     *("--tip", "3", "--direction", "+x", "--port", "1", "--port", "2", "--force-per-volt", "12N/V"),
     *("--clamped-capacitance", "4nF", "--quality-factor", "500", "--modal-mass", "1kg"),
@@ -312,6 +316,11 @@ MODES = {
         "impedance compute",
         ("stack", "--points", "5", "--tolerance", "0.9", "--to", "200kHz"),
         {"--ceramic": "pzt4", "--poled": "x", "--drive": "+x", "--ground": "-x"},
+    ),
+    "stress of a transducer": Mode(
+        "impedance compute",
+        ("stack", *BOLTED, "--points", "5", "--tolerance", "0.9", "--amplitude", "5um", "--torque", "20N*m"),
+        {"--amplitude": ("5um", "6um"), "--torque": ("20N*m", "25N*m"), "--nut-factor": "0.18", "--preload": "20kN"},
     ),
     "sweep on a grid": Mode(
         "sweep", (RIG, *OVER), SWEEP | {"--over": (OVER[1], "sliding.sliding_speed=20mm/s,60mm/s"), "--from": "1V"}

@@ -12,6 +12,7 @@ from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.models.fem import ConvergedModes, Transducer
 from sonolube.models.fem.results.impedance_spectra import SupportedSpectrum
 from sonolube.models.fem.results.part_modes import PartModes, elastic_rows, frequency_text
+from sonolube.models.fem.results.stack_stress import StackStress
 from sonolube.report.blocks import Block, Rows, Table
 from sonolube.report.results.record_object import finite, picked
 from sonolube.rig.file.structures import MODE_LISTS
@@ -143,6 +144,37 @@ def blocks(spectra: Mapping[str, SupportedSpectrum], measured: ImpedanceSpectrum
             f"{measured.file_name}"
         )
     return blocks
+
+
+_STRESS_HEADS = ("mode", "stack", "highest", "rod", "highest", "share of rod")
+
+
+def stress_blocks(stresses: Mapping[str, Mapping[str, StackStress]], amplitude: float) -> list[Block]:
+    """Stress amplitude and highest stress of stack and rod in each coupled mode."""
+    blocks: list[Block] = []
+    for name, modes in stresses.items():
+        blocks.append(f"  {name}: axial stress at {format_si(amplitude, 'm')} of the working end, tension positive")
+        rows = [
+            (
+                mode,
+                format_si(each.stack_amplitude, "Pa"),
+                format_si(each.highest_stack_stress, "Pa"),
+                *([format_si(each.rod_amplitude, "Pa"), format_si(each.highest_rod_stress, "Pa")]),
+                f"{each.rod_share:.1%}",
+            )
+            for mode, each in modes.items()
+        ]
+        blocks.append(Table(_STRESS_HEADS, rows))
+    return blocks
+
+
+def stress_object(modes: Mapping[str, StackStress]) -> list[dict[str, Any]]:
+    """Stresses of stack and rod in each coupled mode, for JSON."""
+    names = ("stack_amplitude", "highest_stack_stress", "rod_amplitude", "highest_rod_stress", "stack_mean", "rod_mean")
+    return [
+        {"name": mode, **si(picked(each, *names), unit="Pa"), **si(picked(each, "rod_share"), unit="")}
+        for mode, each in modes.items()
+    ]
 
 
 def impedance_object(
