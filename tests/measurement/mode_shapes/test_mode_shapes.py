@@ -23,7 +23,7 @@ from sonolube.measurement.mode_shapes.participation import (
     port_participation,
 )
 from sonolube.models.dynamics import Structure, contact_receptance, drive_receptance, modal_structure
-from sonolube.models.fem import Mesh, Model, box_mesh, isotropic_medium, natural_modes
+from sonolube.models.fem import PARTS, Mesh, Model, box_mesh, generate_mesh, isotropic_medium, natural_modes
 
 LENGTH, FORCE, CAPACITANCE = 0.06, 12.0, 4e-9
 MILLIMETRES = UnitSystem(length_unit="mm", force_unit="N")
@@ -114,6 +114,42 @@ def test_a_bar_written_in_each_format_has_its_frequencies_participations_and_res
         expected = response(own, frequency=AT)
         error = np.abs(response(read, frequency=AT) - expected)
         assert np.all(error < 2 * QUALITY * DIGITS * np.abs(expected) + 4 * DIGITS * np.abs(expected).max())
+
+
+def test_a_stepped_horn_written_in_each_format_has_the_tip_that_it_was_written_with(tmp_path: Path) -> None:
+    pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
+    sizes = {"length": 0.06, "end_length": 0.065, "radius": 0.02, "end_radius": 0.01}
+    mesh = generate_mesh(PARTS["stepped_horn"](**sizes), element_size=0.02)
+    steel = isotropic_medium(youngs_modulus=200e9, poisson_ratio=0.29, density=7900.0)
+    found = natural_modes(Model(mesh=mesh, media={mesh.regions[0]: steel}), count=6)
+    elastic = slice(found.rigid_body_count, None)
+    axis = int(np.argmax(np.ptp(mesh.nodes, axis=0)))
+    face = mesh.face_nodes(f"+{'xyz'[axis]}")
+    own = -found.shapes[:, face, axis].mean(axis=1)
+    numbers: dict[str, Any] = {"frequency": found.natural_frequency, "position": mesh.nodes, "shape": found.shapes}
+    write_universal_file(tmp_path / "horn.unv", factors=(1.0, 1.0), mass=np.ones(len(own)).tolist(), **numbers)
+    (tmp_path / "horn.frd").write_text(frd_text(mass=np.ones(len(own)).tolist(), **numbers))
+    for name, units in (("horn.unv", None), ("horn.frd", UnitSystem(length_unit="m", force_unit="N"))):
+        modes = read_mode_shapes(tmp_path / name, units=units)
+        tip = [find_node(modes, str(number + 1), name="tip") for number in face]
+        read = contact_participation(modes, tip, outward=direction_vector(f"+{'xyz'[axis]}", name="direction"))
+        assert modes.natural_frequency[elastic] == approx(found.elastic_frequency, rel=DIGITS)
+        assert read[elastic] == approx(own[elastic], abs=2 * DIGITS * np.abs(found.shapes).max())
+        responses = [
+            contact_receptance(
+                modal_structure(
+                    frequencies=np.where(frequency > 1, frequency, 0.0),
+                    damping_ratios=0.5 / QUALITY,
+                    drive_participation=0 * tips,
+                    contact_participation=tips,
+                    clamped_capacitance=CAPACITANCE,
+                ),
+                frequency=AT,
+            )
+            for frequency, tips in ((modes.natural_frequency, read), (found.natural_frequency, own))
+        ]
+        error = np.abs(responses[0] - responses[1])
+        assert np.all(error < 2 * QUALITY * DIGITS * np.abs(responses[1]) + 4 * DIGITS * np.abs(responses[1]).max())
 
 
 def test_the_first_axial_mode_of_a_bar_has_the_participations_of_its_closed_form(tmp_path: Path) -> None:
