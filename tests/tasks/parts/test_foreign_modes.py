@@ -96,9 +96,13 @@ def test_a_table_of_other_columns_simulates_as_the_modes_it_was_made_of(tmp_path
     (tmp_path / "collar-modes.toml").write_text(str(*found.files().values()), encoding="utf-8")
     text = (RIGS / "collar.toml").read_text(encoding="utf-8")
     (tmp_path / "rig.toml").write_text(text.replace("modes/collar-modes", "collar-modes"), encoding="utf-8")
-    again, before = sl.simulate(tmp_path / "rig.toml"), sl.simulate(RIGS / "collar.toml")
+    changes = ["vibration.amplitude_source=computed", "drive.frequency=24.9kHz"]
+    rigs = [read_rig(path, changes=changes) for path in (tmp_path / "rig.toml", RIGS / "collar.toml")]
+    again, before = map(sl.simulate, rigs)
     for name in ("friction_force", "vibration_amplitude"):
         assert float(again[name]) == approx(float(before[name]), rel=1e-6)
+    by_voltage = float(sl.simulate(RIGS / "collar.toml")["vibration_amplitude"])  # without the modes
+    assert float(before["vibration_amplitude"]) != approx(by_voltage, rel=0.01)
 
 
 @mark.parametrize(
