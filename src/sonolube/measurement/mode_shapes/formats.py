@@ -219,7 +219,8 @@ def _universal(path: Path, units: UnitSystem | None) -> ModeShapes:
         file = pyuff.UFF(str(path))
         types = np.atleast_1d(file.get_set_types())
         require_channels(types.size, path, kind="data sets")
-        sets = {number: _sets(file, types, number) for number in (55, *_NODES, 164)}
+        rows = {number: np.flatnonzero(types == number) for number in (55, *_NODES, 164)}
+        sets = {number: [file.read_sets(int(row)) for row in found] for number, found in rows.items()}
         shapes = [each for each in sets[55] if _is_shape(each)]
         modes = [_universal_mode(each) for each in shapes]
         positions = {k: v for number in reversed(_NODES) for each in sets[number] for k, v in _positions(each).items()}
@@ -234,10 +235,6 @@ def _universal(path: Path, units: UnitSystem | None) -> ModeShapes:
         f"of complex shapes the real part at the best phase is taken; up to {skew:.0%} of a shape is out of phase"
     ] * (skew > _SKEW)
     return _mode_shapes(modes, positions, scales, format_name=UNIVERSAL_FILE, path=path, caveats=caveats)
-
-
-def _sets(file: Any, types: Integers, number: int) -> list[dict[str, Any]]:
-    return [file.read_sets(int(index)) for index in np.flatnonzero(types == number)]
 
 
 def _is_shape(data: dict[str, Any]) -> bool:
