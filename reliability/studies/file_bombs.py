@@ -27,7 +27,7 @@ from sonolube.measurement.measured_runs import read_runs
 from sonolube.measurement.recordings.reader import read_recording
 from sonolube.measurement.surface_files.reader import read_height_map
 from sonolube.rig import read_rig
-from sonolube.rig.file.reader import read_modes
+from sonolube.rig.file.modes_file import read_modes
 from sonolube.text.units import to_si
 
 _MEMORY = 10**9  # bytes beside those of the process

@@ -62,7 +62,7 @@ KINDS_OF_FOLDER = ("input", "link to an input", *IN_THE_WAY)
 KINDS_INSIDE = ("link to an input", "second name of an input", "folder", "pipe", "link to a pipe", "dangling link")
 POSITIONAL = ("new",)  # commands whose output is an argument
 _LONGEST = 2.0  # s of processor time, all modules being imported before
-_STEMS = dict.fromkeys(("rig", "part", "shape", "runs", "run", "pressed", "file"), "in") | {
+_STEMS = dict.fromkeys(("rig", "part", "shape", "runs", "run", "pressed", "file", "from_file"), "in") | {
     "of": "speed",
     "kind": "velocity-power",
     "horn": "steel",

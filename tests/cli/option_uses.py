@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from reliability import virtual_contact
+from tests.mode_files import write_universal_file
 
 from sonolube.laboratory import Block, Channel
 from sonolube.laboratory.records import new_run
@@ -32,6 +33,14 @@ SHEETS = {"--test-sheet": "FOLDER/sheet.toml", "--report": "OUT/page.html"}
 KNOWN = (
     *("--pin", "aluminium_2024", "--disc", "stainless_steel_316", "--load", "5N", "--speed", "0.2m/s"),
     *("--frequency", "20kHz", "--friction", "0.4"),
+)
+BOLTED = (
+    *("--set", "outer_radius=15mm", "--set", "inner_radius=6mm", "--set", "length=20mm", "--set", "rod_radius=4mm"),
+    *("--set", "back_length=30mm", "--set", "front_length=30mm"),
+)
+FOREIGN = (
+    *("--tip", "3", "--direction", "+x", "--port", "1", "--port", "2", "--force-per-volt", "12N/V"),
+    *("--clamped-capacitance", "4nF", "--quality-factor", "500", "--modal-mass", "1kg"),
 )
 _SHORT_PROTOCOL = """title = "short"
 source = "none"
@@ -273,6 +282,23 @@ MODES = {
         ),
         {"--contact": "back", "--body-mass": "2kg", "--body-stiffness": "200N/m", "--body-damping": "2N*s/m"},
     ),
+    "modes of another program": Mode(
+        "modes",
+        ("--from", "FOLDER/bar.unv", *FOREIGN, "--length-unit", "mm", "--force-unit", "N"),
+        {
+            "--from": ("FOLDER/bar.unv", "FOLDER/lighter.unv"),
+            "--tip": "20,0,0mm",
+            "--direction": ("+x", "-x"),
+            "--port": "2",
+            "--force-per-volt": ("12N/V", "13N/V"),
+            "--clamped-capacitance": ("4nF", "5nF"),
+            "--quality-factor": ("500", "600"),
+            "--modal-mass": ("1kg", "2kg"),
+            "--length-unit": ("mm", "cm"),
+            "--force-unit": ("N", "kN"),
+            "--body-mass": "2kg",
+        },
+    ),
     "impedance of a part": Mode(
         "impedance compute",
         ("block", *BAR, "--points", "5", "--tolerance", "0.9", "--to", "120kHz"),
@@ -295,6 +321,11 @@ MODES = {
         "impedance compute",
         ("stack", "--points", "5", "--tolerance", "0.9", "--to", "200kHz"),
         {"--ceramic": "pzt4", "--poled": "x", "--drive": "+x", "--ground": "-x"},
+    ),
+    "stress of a transducer": Mode(
+        "impedance compute",
+        ("stack", *BOLTED, "--points", "5", "--tolerance", "0.9", "--amplitude", "5um", "--torque", "20N*m"),
+        {"--amplitude": ("5um", "6um"), "--torque": ("20N*m", "25N*m"), "--nut-factor": "0.18", "--preload": "20kN"},
     ),
     "sweep on a grid": Mode(
         "sweep", (RIG, *OVER), SWEEP | {"--over": (OVER[1], "sliding.sliding_speed=20mm/s,60mm/s"), "--from": "1V"}
@@ -796,6 +827,12 @@ def write_inputs(place: Path) -> None:
         (place / name).mkdir()
         for scan in range(3):
             np.save(place / name / f"{scan}.npy", depth * (1 + 0.1 * scan) * valley)
+    bar = np.array([[0.0, 0, 0], [10, 0, 0], [20, 0, 0]])
+    shape = np.array([[[1.0, 0, 0], [0, 0, 0], [-1, 0.1, 0]], [[1.0, 0, 0], [-1, 0, 0], [1, 0, 0.2]]])
+    for name, mass in (("bar", 2e-3), ("lighter", 1e-3)):
+        write_universal_file(
+            place / f"{name}.unv", frequency=[2e4, 4e4], position=bar, shape=shape, mass=[mass, 0], damping=[1e-3, 0]
+        )
     (place / "catalogue.toml").write_text(
         '[mine]\ntitle = "T"\nkind = "stack"\nsource = "own"\nstroke = 2e-5\n'
         "stroke_voltage = 100.0\nblocked_force = 800.0\n"

@@ -95,7 +95,12 @@ TASKS: Final = (
     Task(PREDICT, "transient", "predict.response_and_regime:transient", "{rig}-transient.*"),
     Task(PREDICT, "thermal", "predict.rig_record:thermal", "{rig}-thermal.*"),
     Task(PREDICT, "regime", "predict.response_and_regime:regime", "{rig}-regime.*"),
-    Task(_PART, "modes", "parts.modes:modes", "{part}-*.png {part}-*.gif {part}-shapes.csv {part}-modes.*"),
+    Task(
+        _PART,
+        "modes",
+        "parts.modes:modes",
+        "{part}-*.png {part}-*.gif {part}-shapes.csv {part}-modes.* {from_file}-modes.toml",
+    ),
     Task(
         _PART,
         "impedance compute",

@@ -7,7 +7,7 @@ from pytest import approx, mark, raises
 from sonolube.errors import InvalidInput
 from sonolube.measurement.contact_stiffness.resonance_spectrum import read_resonance_spectrum
 from sonolube.measurement.impedance.spectrum import read_impedance
-from sonolube.rig.file.reader import read_modes
+from sonolube.rig.file.modes_file import read_modes
 
 
 def written(folder: Path, text: str, name: str = "test.csv") -> Path:

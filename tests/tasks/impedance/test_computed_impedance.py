@@ -73,3 +73,49 @@ def test_arguments_are_refused_by_their_names() -> None:
         sl.impedance.compute("stack", poled="x")
     with raises(InvalidInput, match=r"^points must be finite and lie between 2"):
         sl.impedance.compute("stack", points=1)
+
+
+BOLTED: dict[str, Any] = {
+    "sizes": {"outer_radius": "15mm", "inner_radius": "6mm", "length": "20mm", "rod_radius": "4mm"},
+    "points": 5,
+    "tolerance": 0.9,
+    "highest": "40kHz",
+}
+BOLTED["sizes"] |= {"back_length": "30mm", "front_length": "30mm"}
+
+
+def test_the_stress_of_a_stack_has_its_preload_by_force_or_by_torque_and_says_where_it_opens() -> None:
+    pressed = sl.impedance.compute("stack", amplitude="2um", preload=20e3, **BOLTED)
+    turned = sl.impedance.compute("stack", amplitude="8um", torque="10 N m", clamp=["front.+z"], **BOLTED)
+    (mode,) = pressed.object()["stresses"]["free"]
+    # pi (15^2 - 6^2) mm2 and pi 4^2 mm2
+    assert mode["stack_mean"]["value"] == approx(-33.7e6, rel=0.01)
+    assert mode["rod_mean"]["value"] == approx(398e6, rel=0.01)
+    assert mode["highest_rod_stress"]["value"] > mode["rod_mean"]["value"]
+    assert pressed.caveats() == []
+    assert turned.object()["preload"] == {"value": approx(10 / (0.2 * 8e-3)), "unit": "N"}
+    assert list(turned.object()["stresses"]) == ["free"]  # the working end rests in the other
+    opened, torque = turned.caveats()
+    assert "the stack is in tension by" in opened
+    assert "within about 30 %" in torque
+    assert "stresses" not in sl.impedance.compute("stack", **BOLTED).object()
+
+
+@pytest.mark.parametrize(
+    ("part", "arguments", "complaint"),
+    [
+        ("stack", {"preload": 1e3}, "preload has no meaning without amplitude"),
+        ("stack", {"amplitude": 1e-6, "preload": 1e3, "torque": 1.0}, "preload has no meaning beside torque"),
+        ("stack", {"amplitude": 1e-6, "nut_factor": 0.3}, "nut_factor has no meaning without torque"),
+        ("stack", {"amplitude": 1e-6, "torque": 1.0}, "torque needs the thread of a stack with rod_radius"),
+        ("stack", {"amplitude": 1e-6, "preload": 1e3, "sizes": RING["sizes"]}, "stack has no rod that preloads"),
+        ("stack", {"amplitude": -1e-6}, "amplitude"),
+        ("collar", {"amplitude": 1e-6}, "collar has no working end in line with its stack"),
+    ],
+)
+def test_a_stress_that_cannot_be_given_is_refused_before_anything_is_solved(
+    part: str, arguments: dict[str, Any], complaint: str
+) -> None:
+    with raises(InvalidInput, match=complaint) as refusal:
+        sl.impedance.compute(part, **arguments)
+    assert "\n" not in str(refusal.value)

@@ -14,6 +14,7 @@ from .derived_stacks import (
     bolted_stack as bolted_stack,
     equivalent_stack as equivalent_stack,
     lever_amplified_stack as lever_amplified_stack,
+    tightening_preload as tightening_preload,
 )
 from .drive import (
     AmplifierRequirements as AmplifierRequirements,

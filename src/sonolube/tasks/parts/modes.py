@@ -12,7 +12,6 @@ from sonolube.errors import InvalidInput, UnknownName
 from sonolube.models.fem.results import part_modes as mode_files
 from sonolube.models.fem.results.figures import ShapedSurface, mode_figure, shaped_surface
 from sonolube.models.fem.results.part_modes import PartModes, modes_dataset, part_modes
-from sonolube.operating_system import quoted
 from sonolube.report import Drawing
 from sonolube.report.results.parts import modes_and_impedance as results
 from sonolube.tasks.answer import Answer, Block, Dataset, answer
@@ -20,6 +19,7 @@ from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.own_tables import number_table
 from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Sizes, Watched
 from sonolube.tasks.parts import named_parts as parts
+from sonolube.tasks.parts.foreign_modes import FILE_ONLY, ForeignModesAnswer, foreign_structure, typed, typed_command
 from sonolube.tasks.parts.named_parts import DEFAULT_MATERIAL, supported_part
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import given_arguments, in_si, refuse_unused, shown, task
@@ -28,13 +28,18 @@ from sonolube.vocabulary import quantity
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+_PART_ONLY = (
+    *("part", "sizes", "material", "youngs_modulus", "poisson_ratio", "density", "count", "clamp", "axis", "tolerance"),
+    *("points", "toward", "contact", "vtu", "animate"),
+)
 _CHOICES = ("count", "clamp", "tolerance", "contact", "body_mass", "body_stiffness", "body_damping")  # of the modes
-_BODY_UNITS = {"body_mass": "kg", "body_stiffness": "N/m", "body_damping": "N s/m"}
 
 
 @task
 def modes(
-    part: parts.Part,
+    part: Annotated[
+        InputFile | None, File("A part such as block, a transducer such as stack, or a STEP file.", "PART")
+    ] = None,
     *,
     sizes: Sizes = None,
     material: Annotated[str, Parameter("Material of the part; transducers have their own.", "NAME")] = DEFAULT_MATERIAL,
@@ -66,9 +71,36 @@ def modes(
     body_damping: Annotated[Number, Quantity("Of the damper beside it.", "N s/m")] = "0N s/m",
     vtu: Annotated[bool, Parameter("Write the modes for ParaView too.")] = False,
     animate: Annotated[bool, Parameter("Draw each mode as an animated GIF too.")] = False,
+    from_file: Annotated[
+        InputFile | None,
+        File("Modes of another program instead of a part: .unv, .uff, .frd, or a table.", "FILE", option="--from"),
+    ] = None,
+    tip: Annotated[
+        Sequence[str], Parameter("Node or point x,y,z of the contact; the mean of several.", "NODE|POINT")
+    ] = (),
+    direction: Annotated[
+        str | None, Parameter("From the tip to the other body, such as +z or 0,0.6,0.8.", "DIRECTION")
+    ] = None,
+    port: Annotated[
+        Sequence[str], Parameter("Node or point at an end of the stack; both are needed.", "NODE|POINT")
+    ] = (),
+    force_per_volt: Annotated[
+        Number | None, Quantity("Blocked force of the stack per volt, such as 12N/V.", "N/V", kind="FORCE/VOLT")
+    ] = None,
+    clamped_capacitance: Annotated[
+        Number | None, Quantity("Of the stack with all modes of the file held.", "clamped_capacitance")
+    ] = None,
+    quality_factor: Annotated[
+        Number | None, Quantity("Of modes whose file states no damping.", "quality_factor", kind="RATIO")
+    ] = None,
+    modal_mass: Annotated[
+        Number | None, Quantity("Of modes whose file states none; 1kg if mass-normalised.", "kg")
+    ] = None,
+    length_unit: Annotated[str | None, Parameter("Of a file that states none, such as mm.", "UNIT")] = None,
+    force_unit: Annotated[str | None, Parameter("Of a file that states none, such as N.", "UNIT")] = None,
     **watch: Unpack[Watched],
-) -> "ModesAnswer":
-    """Natural modes of a part: frequencies with their errors, names and pictures.
+) -> "ModesAnswer | ForeignModesAnswer":
+    """Natural modes of a part, with errors, names and pictures; or those of another program for a rig file.
 
     Example: sonolube modes block --set length=127mm --set width=60.96mm --set thickness=25.4mm
 
@@ -80,13 +112,34 @@ def modes(
     >>> format_si(float(answer["natural_frequency"].sel(mode="axial 1")), "Hz")  # half a wavelength on 20 mm of steel
     '124 kHz'
     """
+    body = _body(body_mass, body_stiffness, body_damping)
+    if body_mass is None:
+        refuse_unused("body_stiffness", "body_damping", because=f"without {shown('body_mass')}, which it holds")
+    if from_file is not None:
+        refuse_unused(*_PART_ONLY, because=f"for {shown('from_file')}; it is for a part")
+        return foreign_structure(
+            from_file,
+            tip=tip,
+            direction=direction,
+            port=port,
+            force_per_volt=force_per_volt,
+            clamped_capacitance=clamped_capacitance,
+            quality_factor=quality_factor,
+            modal_mass=modal_mass,
+            units=(length_unit, force_unit),
+            body=body,
+        )
+    refuse_unused(*FILE_ONLY, because=f"for a part; it is for {shown('from_file')}")
+    if part is None:
+        raise InvalidInput(
+            f"needs a part, such as block, or {shown('from_file')}, modes of another program", key="part"
+        )
     name = parts.part_name(part)
-    _refuse_unused(name, points=points, contact=contact, body_mass=body_mass)
+    _refuse_unused(name, points=points, contact=contact)
     if contact is not None:
         _require_output(name, sizes or {}, contact)
     given = {name: in_si(name, value) for name, value in given_arguments(parts.ELASTIC_PROPERTIES).items()}
     supported = supported_part(part, sizes or {}, material=material, properties=given, clamp=clamp)
-    body = _body(body_mass, body_stiffness, body_damping)
     scanned = None if points is None else _points_in_metres(points)
     with stage("meshing and solving") as advance:
         solved = part_modes(supported, count=count, axis=axis, tolerance=in_si("tolerance", tolerance), advance=advance)
@@ -94,7 +147,7 @@ def modes(
         if supported.transducer is not None and contact is not None:
             meshes = len(solved.found.nodes)
             advance("reduction", meshes, meshes + 1)
-            command = _command(name, sizes or {}, _CHOICES)
+            command = _command(name, sizes or {})
             structure = mode_files.structure_modes(
                 solved.found, supported.transducer, contact=contact, body=body, command=command
             )
@@ -108,7 +161,7 @@ def modes(
     )
 
 
-def _refuse_unused(part: str, *, points: InputFile | None, contact: str | None, body_mass: Number | None) -> None:
+def _refuse_unused(part: str, *, points: InputFile | None, contact: str | None) -> None:
     """Refuse arguments that the part and the others leave without effect."""
     if part in parts.ALL_TRANSDUCERS:
         own = ("material", "youngs_modulus", "poisson_ratio", "density")
@@ -117,8 +170,6 @@ def _refuse_unused(part: str, *, points: InputFile | None, contact: str | None, 
         refuse_unused("toward", because=f"without {shown('points')}, at which the component is written")
     if contact is None:
         refuse_unused("body_mass", because=f"without {shown('contact')}, on which it rests")
-    if body_mass is None:
-        refuse_unused("body_stiffness", "body_damping", because=f"without {shown('body_mass')}, which it holds")
 
 
 def _require_output(part: str, sizes: parts.PartSizes, contact: str) -> None:
@@ -150,20 +201,12 @@ def _points_in_metres(points: InputFile) -> Floats:
     return np.asarray(1e-3 * table)
 
 
-def _command(part: str, sizes: parts.PartSizes, names: Sequence[str]) -> str:
+def _command(part: str, sizes: parts.PartSizes) -> str:
     """Command that computes the same modes again, without the options of its files."""
     words = ["sonolube", "modes", part]
     for name, size in sizes.items():
-        words += ["--set", f"{name}={_typed(size, quantity(name).unit)}"]
-    for name, value in given_arguments(names).items():
-        for each in value if isinstance(value, list | tuple) else [value]:
-            words += [f"--{name.replace('_', '-')}", _typed(each, _BODY_UNITS.get(name, ""))]
-    return " ".join(quoted(word) if " " in word else word for word in words)
-
-
-def _typed(value: Number, unit: str) -> str:
-    """Value as a terminal takes it."""
-    return value if isinstance(value, str) else f"{value}{unit}"
+        words += ["--set", f"{name}={typed(size, quantity(name).unit)}"]
+    return typed_command(words, _CHOICES)
 
 
 @answer

@@ -155,16 +155,39 @@ def structure_modes(
         f"damping is that of the assumed loss tangents of the materials; {found.nodes[-1]} nodes",
         *(f"{size.name}: {size.source}" for size in transducer.dimensions if not size.printed),
     ]
+    heading = (
+        f"# Modes for [structure] of a rig file: {len(rows)} elastic ones, those without deformation, and the\n"
+        "# static correction for all others. Shapes have a modal mass of 1 kg."
+    )
+    return modes_file_text(
+        columns,
+        heading=heading,
+        command=command,
+        frequency_error=error,
+        assumptions=assumptions,
+        clamped_capacitance=structure.clamped_capacitance,
+    )
+
+
+def modes_file_text(
+    columns: Mapping[str, Floats],
+    *,
+    heading: str,
+    command: str,
+    assumptions: Sequence[str],
+    clamped_capacitance: float,
+    frequency_error: float | None = None,
+) -> str:
+    """File of modes as TOML, from its columns by name."""
     return "\n".join(
         [
-            f"# Modes for [structure] of a rig file: {len(rows)} elastic ones, those without deformation, and the",
-            "# static correction for all others. Shapes have a modal mass of 1 kg.",
+            heading,
             f"command = {json.dumps(command)}",
-            f"frequency_error = {error:.2g}",
+            *([] if frequency_error is None else [f"frequency_error = {frequency_error:.2g}"]),
             "assumptions = [",
             *(f"  {json.dumps(text, ensure_ascii=False)}," for text in assumptions),
             "]",
-            f"clamped_capacitance = {json.dumps(f'{structure.clamped_capacitance:.9g} F')}",
+            f"clamped_capacitance = {json.dumps(f'{clamped_capacitance:.9g} F')}",
             *(f"{name} = [{', '.join(f'{value:.9g}' for value in values)}]" for name, values in columns.items()),
             "",
         ]

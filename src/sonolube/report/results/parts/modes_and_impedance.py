@@ -1,17 +1,26 @@
 """Natural modes of a part, and impedance spectra of a transducer with its coupled modes, as text and JSON."""
 
 import tomllib
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Mapping, Sequence
+from math import isfinite
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from sonolube.checks import Floats
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.models.fem import ConvergedModes, Transducer
 from sonolube.models.fem.results.impedance_spectra import SupportedSpectrum
 from sonolube.models.fem.results.part_modes import PartModes, elastic_rows, frequency_text
+from sonolube.models.fem.results.stack_stress import StackStress
 from sonolube.report.blocks import Block, Rows, Table
-from sonolube.report.results.record_object import picked
+from sonolube.report.results.record_object import finite, picked
+from sonolube.rig.file.structures import MODE_LISTS
 from sonolube.text.units import format_si
 from sonolube.vocabulary import si
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def modes_blocks(solved: PartModes) -> list[Block]:
@@ -57,6 +66,63 @@ def _frequency(found: ConvergedModes, row: int) -> str:
     )
 
 
+def foreign_blocks(title: str, lists: Mapping[str, Floats], notes: Sequence[str]) -> list[Block]:
+    """Frequency, quality factor, participations and tip amplitude per volt of modes of another program."""
+    heads = ("mode", "frequency", "Q", "contact kg^-1/2", "drive N/V kg^-1/2", "tip per volt")
+    columns = zip(*(lists[name] for name in MODE_LISTS), resonant_displacement(lists), strict=True)
+    rows = [
+        (
+            str(number),
+            f"{frequency:.1f} Hz" if frequency else "rigid",
+            f"{0.5 / ratio:.4g}" if ratio else "-",
+            f"{contact:.4g}",
+            f"{drive:.4g}",
+            format_si(peak, "m") if isfinite(peak) else "-",
+        )
+        for number, (frequency, ratio, drive, contact, peak) in enumerate(columns, start=1)
+    ]
+    return [title, *(f"  {note}" for note in notes), Table(heads, rows)]
+
+
+def resonant_displacement(lists: Mapping[str, Floats]) -> Floats:
+    """Displacement of the contact per volt in each mode alone at its frequency, in m/V; NaN without damping.
+
+    |b c|/(2 zeta omega^2) of the drive participation b and the contact participation c.
+    """
+    stiffness = 2 * lists["damping_ratio"] * (2 * np.pi * lists["natural_frequency"]) ** 2
+    driven = np.abs(lists["drive_participation"] * lists["contact_participation"])
+    return np.asarray(np.divide(driven, stiffness, out=np.full(driven.shape, np.nan), where=stiffness > 0))
+
+
+def foreign_object(lists: Mapping[str, Floats], structure: str) -> dict[str, Any]:
+    """Structure as TOML, and frequency, damping, participations and tip amplitude per volt of each mode."""
+    rows = zip(*(lists[name].tolist() for name in MODE_LISTS), resonant_displacement(lists).tolist(), strict=True)
+    return {
+        "structure": tomllib.loads(structure),
+        "modes": [
+            {
+                **si({"natural_frequency": frequency, "damping_ratio": ratio}),
+                **si({"drive_participation": drive}, unit=f"N/V {_PER_ROOT}"),
+                **si({"contact_participation": contact}, unit=_PER_ROOT),
+                **si({"displacement_per_volt": finite(peak)}),
+            }
+            for frequency, ratio, drive, contact, peak in rows
+        ],
+    }
+
+
+def foreign_dataset(lists: Mapping[str, Floats]) -> "xr.Dataset":
+    """Columns of a file of modes and tip amplitude per volt, over the number of the mode."""
+    import xarray as xr
+
+    units = {"natural_frequency": "Hz", "damping_ratio": "1", "drive_participation": f"N/V {_PER_ROOT}"}
+    columns = {**lists, "displacement_per_volt": resonant_displacement(lists)}
+    units |= {"contact_participation": _PER_ROOT, "displacement_per_volt": "m/V"}
+    data = {name: ("mode", values, {"units": units[name]}) for name, values in columns.items()}
+    return xr.Dataset(data, coords={"mode": np.arange(1, len(columns["natural_frequency"]) + 1)})
+
+
+_PER_ROOT = "kg**-0.5"
 _HEADS = ("mode", "f_s", "f_p", "k_eff", "tip per volt")
 
 
@@ -78,6 +144,37 @@ def blocks(spectra: Mapping[str, SupportedSpectrum], measured: ImpedanceSpectrum
             f"{measured.file_name}"
         )
     return blocks
+
+
+_STRESS_HEADS = ("mode", "stack", "highest", "rod", "highest", "share of rod")
+
+
+def stress_blocks(stresses: Mapping[str, Mapping[str, StackStress]], amplitude: float) -> list[Block]:
+    """Stress amplitude and highest stress of stack and rod in each coupled mode."""
+    blocks: list[Block] = []
+    for name, modes in stresses.items():
+        blocks.append(f"  {name}: axial stress at {format_si(amplitude, 'm')} of the working end, tension positive")
+        rows = [
+            (
+                mode,
+                format_si(each.stack_amplitude, "Pa"),
+                format_si(each.highest_stack_stress, "Pa"),
+                *([format_si(each.rod_amplitude, "Pa"), format_si(each.highest_rod_stress, "Pa")]),
+                f"{each.rod_share:.1%}",
+            )
+            for mode, each in modes.items()
+        ]
+        blocks.append(Table(_STRESS_HEADS, rows))
+    return blocks
+
+
+def stress_object(modes: Mapping[str, StackStress]) -> list[dict[str, Any]]:
+    """Stresses of stack and rod in each coupled mode, for JSON."""
+    names = ("stack_amplitude", "highest_stack_stress", "rod_amplitude", "highest_rod_stress", "stack_mean", "rod_mean")
+    return [
+        {"name": mode, **si(picked(each, *names), unit="Pa"), **si(picked(each, "rod_share"), unit="")}
+        for mode, each in modes.items()
+    ]
 
 
 def impedance_object(
