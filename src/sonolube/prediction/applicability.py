@@ -71,6 +71,11 @@ def applicability(rig: Rig, *, lubricant: bool = False) -> Applicability:
 def _in_plane(rig: Rig) -> str | None:
     """Refusal of a vibration that is not along the normal alone."""
     fraction = getattr(rig.friction_model, "in_plane_fraction", 0.0)
+    if not rig.direction.is_normal:
+        return (
+            f"{rig.title}: a prediction is of vibration along the normal, but this one is {rig.direction.text}; use"
+            " friction, which gives the theory, or compare with own runs"
+        )
     if not fraction:
         return None
     return (

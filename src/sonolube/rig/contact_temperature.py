@@ -147,6 +147,11 @@ def temperature_point(
     if rig.sliding_speed <= 0:
         raise InvalidInput("sliding.sliding_speed must be positive for heat of friction")
     resolved.require_separation()
+    if not rig.direction.is_normal and not np.any(np.asarray(vibration_heat_rate)):
+        raise InvalidInput(
+            f"{rig.title}: the vibration is {rig.direction.text}, so that it heats the contact by more than the mean"
+            " friction force; give the heat of the vibration, vibration_heat"
+        )
     require_positive(heat_capacity=heat_capacity, thermal_conductance=thermal_conductance, duration=duration)
     levels = np.atleast_1d(require_non_negative(vibration_heat_rate=vibration_heat_rate))
     if not 0 <= dry_duration < duration:

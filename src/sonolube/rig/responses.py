@@ -216,9 +216,11 @@ def simulation_arrays(rig: Rig, result: Simulation) -> LabelledArrays:
     model. Attributes hold the texts of the result, its caveats and the assumptions of the rig.
     """
     vibration = result.vibration
-    motion = vibration.motions[0]
+    motion = rig.direction.over_gap(vibration.motions[0])
     time = np.arange(motion.displacement.size) / (motion.displacement.size * motion.frequency)
     values = {"time": time, "displacement": motion.displacement, "normal_force": motion.normal_force}
+    within = {"displacement_along": motion.along, "displacement_across": motion.across}
+    values |= {name: moved for name, moved in within.items() if moved is not None}
     moving = labelled(values, along="time", title=f"Steady motion of {rig.title}")
     scalars = {
         name: LabelledArray(dims=(), values=np.asarray(np.nan if value is None else value), attrs=labels(name))

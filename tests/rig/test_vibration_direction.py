@@ -1,0 +1,204 @@
+"""Direction of a rig's vibration: words, angles, second components, limits into each other, refusals in one line."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pytest import approx, raises
+from scipy.special import ellipk
+
+from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.models.friction import torsional_vibration_ratio
+from sonolube.rig import Rig, friction_point, operating_points, point_batch, read_rig, simulate, wear_point
+from sonolube.rig.resolved_rig import resolved_rig
+from sonolube.rig.responses import simulation_arrays
+from sonolube.rig.vibration import steady_vibration
+from sonolube.rig.vibration_direction import NORMAL, SAME_DIRECTION, VibrationDirection
+
+RIGS = Path("examples/rigs")
+BRISTLE = "friction.model=bristle_with_holder"
+
+
+def tribometer(*changes: str) -> Rig:
+    return read_rig(RIGS / "tribometer.toml", changes=changes)
+
+
+def coulomb(*changes: str) -> float:
+    return friction_point(tribometer("friction.model=coulomb", *changes)).friction_ratio
+
+
+def peak_velocity(rig: Rig) -> float:
+    assert rig.vibration_amplitude is not None
+    assert rig.drive is not None
+    return 2 * np.pi * rig.drive.frequency * rig.vibration_amplitude
+
+
+def test_along_and_across_have_the_closed_forms() -> None:
+    rig = tribometer()
+    zeta = rig.sliding_speed / peak_velocity(rig)
+    m = 1 / (1 + zeta**2)
+    assert coulomb("vibration.direction=along") == approx(2 / np.pi * np.arcsin(zeta), rel=1e-9)
+    assert coulomb("vibration.direction=across") == approx(2 / np.pi * np.sqrt(1 - m) * ellipk(m), rel=1e-9)
+
+
+def test_a_ring_turns_by_the_mean_over_its_directions() -> None:
+    rig = tribometer()
+    expected = torsional_vibration_ratio(sliding_speed=rig.sliding_speed, vibration_velocity=peak_velocity(rig))
+    found = coulomb("vibration.direction=torsional", "vibration.torsion_radius=2mm")
+    assert found == approx(float(expected), abs=1e-6)
+
+
+@pytest.mark.parametrize(("angle", "word"), [("0 deg", "along"), ("90 deg", "across"), ("180 deg", "along")])
+@pytest.mark.parametrize("model", ["coulomb", "asperity_stick_slip"])
+def test_an_angle_becomes_the_word(angle: str, word: str, model: str) -> None:
+    by_angle, by_word = (
+        friction_point(tribometer(f"friction.model={model}", change)).friction_ratio
+        for change in (f"vibration.vibration_direction={angle}", f"vibration.direction={word}")
+    )
+    assert by_angle == approx(by_word, abs=3e-4)
+
+
+@pytest.mark.parametrize(("word", "same"), SAME_DIRECTION.items())
+def test_words_of_the_literature_mean_the_same(word: str, same: str) -> None:
+    assert tribometer(f"vibration.direction={word}").direction == tribometer(f"vibration.direction={same}").direction
+
+
+def test_nothing_said_is_along_the_normal_and_changes_no_number() -> None:
+    assert tribometer().direction == NORMAL == VibrationDirection(direction="perpendicular")
+    plain, said = (friction_point(tribometer(*each)) for each in ((), ("vibration.direction=normal",)))
+    assert plain == said
+
+
+@pytest.mark.parametrize("model", ["asperity_stick_slip", "bristle_with_holder"])
+@pytest.mark.parametrize("source", ["measured", "computed"])
+def test_a_second_component_along_is_the_in_plane_fraction_of_old_files(model: str, source: str) -> None:
+    common = (f"friction.model={model}", f"vibration.amplitude_source={source}")
+    old = tribometer(*common, "friction.in_plane_fraction=0.3", "friction.in_plane_phase=40deg")
+    new = tribometer(
+        *common, "vibration.second_direction=along", "vibration.second_fraction=0.3", "vibration.second_phase=40deg"
+    )
+    assert friction_point(new).friction_ratio == approx(friction_point(old).friction_ratio, rel=1e-9)
+    assert resolved_rig(old).direction == resolved_rig(new).direction
+    voltage = {"voltage_peak_to_peak": [5.0, 15.0], "voltage_offset": [2.5, 7.5]}
+    one, other = (point_batch(rig, **voltage).numbers["friction_ratio"] for rig in (old, new))
+    assert other == approx(one, rel=1e-9)
+
+
+def test_a_second_amplitude_is_the_fraction_of_the_main_one() -> None:
+    by_size, by_fraction = (
+        tribometer("vibration.second_direction=across", f"vibration.{change}").direction
+        for change in ("second_amplitude=0.5um", "second_fraction=0.2")
+    )
+    assert by_size.second_fraction == approx(by_fraction.second_fraction)
+
+
+def test_a_normal_second_component_of_an_in_plane_vibration_is_the_same_ellipse() -> None:
+    """A main part along with a second one along the normal, and the other way round, scaled and delayed."""
+    one = tribometer(
+        "vibration.direction=along",
+        "vibration.second_direction=normal",
+        "vibration.second_fraction=0.5",
+        "vibration.second_phase=50deg",
+    )
+    other = tribometer(
+        "vibration.vibration_amplitude=1.25um", "vibration.second_direction=along", "vibration.second_fraction=2",
+        "vibration.second_phase=-50deg", "vibration.amplitude_source=measured",
+    )  # fmt: skip
+    motion = steady_vibration(one).motions[0]
+    sine = steady_vibration(other).motions[0]
+    assert np.ptp(motion.displacement) / 2 == approx(1.25e-6, rel=1e-9)
+    assert friction_point(one).friction_ratio == approx(friction_point(other).friction_ratio, abs=0.02)
+    assert np.ptp(sine.displacement) / 2 == approx(1.25e-6, rel=0.02)  # of a structure, nearly a sine
+
+
+def test_little_of_a_second_component_changes_little() -> None:
+    alone = coulomb("vibration.direction=along")
+    with_little = coulomb(
+        "vibration.direction=along", "vibration.second_direction=across", "vibration.second_fraction=1e-6"
+    )
+    assert with_little == approx(alone, abs=1e-4)
+
+
+@pytest.mark.parametrize("direction", ["along", "across"])
+def test_no_amplitude_leaves_friction_as_it_is(direction: str) -> None:
+    for model in ("coulomb", "asperity_stick_slip"):
+        rig = tribometer(
+            f"friction.model={model}", f"vibration.direction={direction}", "vibration.vibration_amplitude=0um"
+        )
+        assert friction_point(rig).friction_ratio == approx(1.0, abs=1e-3)
+
+
+def test_sweeps_of_amplitude_and_speed_carry_the_direction() -> None:
+    rig = read_rig(RIGS / "tribometer.toml", changes=["friction.model=coulomb", "vibration.direction=along"])
+    speeds = np.array([0.05, 0.2, 0.5])
+    points = operating_points(rig, sliding_speed=speeds)
+    assert points.friction_ratio == approx(2 / np.pi * np.arcsin(np.minimum(speeds / peak_velocity(rig), 1)), rel=1e-9)
+    assert np.ptp(points.mean_displacement) == 0
+
+
+def test_a_tip_that_moves_within_the_plane_has_its_amplitude_computed() -> None:
+    rig = tribometer("friction.model=coulomb", "vibration.direction=along", "vibration.amplitude_source=computed")
+    point = friction_point(rig)
+    assert "the tip free within the plane" in point.amplitude_origin
+    halved = friction_point(rig.replace("drive.voltage_peak_to_peak", "14 V"))
+    assert halved.vibration_amplitude == approx(point.vibration_amplitude / 2, rel=1e-12)
+
+
+def test_the_motion_shows_every_component() -> None:
+    rig = tribometer("vibration.direction=across", "vibration.second_direction=normal", "vibration.second_fraction=0.1")
+    arrays = simulation_arrays(rig, simulate(rig))
+    assert np.ptp(arrays["displacement_across"].to_numpy()) / 2 == approx(2.5e-6, rel=1e-4)
+    assert np.ptp(arrays["displacement"].to_numpy()) / 2 == approx(0.25e-6, rel=1e-4)
+    assert "displacement_along" not in arrays
+
+
+def test_what_a_direction_was_tested_with_is_said_first() -> None:
+    along, across = (
+        friction_point(tribometer("friction.model=coulomb", f"vibration.direction={word}"))
+        for word in ("along", "across")
+    )
+    assert "compared with two published points" in along.caveats[0]
+    assert "theory alone" in across.caveats[0]
+    assert "compared with no experiment" in across.caveats[0]
+
+
+def test_wear_within_the_plane_has_no_number() -> None:
+    point = wear_point(tribometer("vibration.direction=along"))
+    assert np.isnan(point.wear_rate_ratio)
+    assert "the wear models are of vibration along the normal" in (point.reason or "")
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        (["vibration.direction=sideways"], "vibration.direction"),
+        (["vibration.direction=torsional"], "needs torsion_radius"),
+        (["vibration.torsion_radius=2mm"], 'torsion_radius belongs to direction "torsional"'),
+        (["vibration.direction=along", "vibration.vibration_direction=3deg"], "give either direction or"),
+        (["vibration.second_direction=along"], "needs second_amplitude or second_fraction"),
+        (["vibration.second_fraction=0.2"], "give second_direction too"),
+        (["vibration.second_direction=normal", "vibration.second_fraction=0.2"], "that of the vibration itself"),
+        (
+            ["vibration.second_direction=along", "vibration.second_fraction=0.2", "vibration.second_amplitude=1um"],
+            "give either second_amplitude or second_fraction",
+        ),
+        (["vibration.direction=along", "friction.in_plane_fraction=0.2"], "say the same twice"),
+        (
+            ["vibration.direction=across", BRISTLE],
+            "friction.model: bristle_with_holder has no law for a vibration across",
+        ),
+        (["vibration.direction=along", "friction.model=kinematic"], "take asperity_stick_slip or bristle_with_holder"),
+        (["vibration.direction=torsional", "vibration.torsion_radius=2um"], "by more than 0.1 rad"),
+    ],
+)
+def test_a_direction_without_meaning_is_refused_in_one_line(changes: list[str], message: str) -> None:
+    with raises(SonolubeError) as refusal:
+        tribometer(*changes)
+    assert message in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+def test_what_needs_the_motion_along_the_normal_refuses_and_says_what_to_do() -> None:
+    rig = tribometer("vibration.direction=along", "vibration.amplitude_source=computed")
+    with raises(InvalidInput, match=r"the vibration is along the sliding; use friction or simulate"):
+        _ = resolved_rig(rig).moved
