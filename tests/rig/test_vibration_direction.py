@@ -41,6 +41,12 @@ def test_along_and_across_have_the_closed_forms() -> None:
     assert coulomb("vibration.direction=across") == approx(2 / np.pi * np.sqrt(1 - m) * ellipk(m), rel=1e-9)
 
 
+def test_the_example_along_the_sliding_reaches_the_printed_reduction() -> None:
+    point = friction_point(read_rig(RIGS / "vibrating_base.toml"))
+    assert point.friction_ratio == approx(2 / np.pi * np.arcsin(0.62 / 6.64), rel=1e-3)
+    assert point.friction_reduction == approx(0.9, abs=0.05)  # D 1.3.1, of Gutowski and Leus
+
+
 def test_a_ring_turns_by_the_mean_over_its_directions() -> None:
     rig = tribometer()
     expected = torsional_vibration_ratio(sliding_speed=rig.sliding_speed, vibration_velocity=peak_velocity(rig))

@@ -13,7 +13,7 @@ from sonolube.models.thermal import EllipticSource, contact_rise
 from sonolube.prediction.bodies import named_bodies
 from sonolube.prediction.evidence import published_rigs
 from sonolube.prediction.hierarchy import central_interval
-from sonolube.prediction.inputs import RigInputs, rig_inputs
+from sonolube.prediction.inputs import RigInputs, rig_inputs, within_plane_refusal
 from sonolube.prediction.posterior import learned
 from sonolube.prediction.predictive import DRAWS, ratio_draws
 from sonolube.rig import ResolvedRig, Rig, thermal_solid
@@ -72,10 +72,7 @@ def _in_plane(rig: Rig) -> str | None:
     """Refusal of a vibration that is not along the normal alone."""
     fraction = getattr(rig.friction_model, "in_plane_fraction", 0.0)
     if not rig.direction.is_normal:
-        return (
-            f"{rig.title}: a prediction is of vibration along the normal, but this one is {rig.direction.text}; use"
-            " friction, which gives the theory, or compare with own runs"
-        )
+        return within_plane_refusal(rig)
     if not fraction:
         return None
     return (

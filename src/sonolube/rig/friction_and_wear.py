@@ -117,7 +117,7 @@ def prescribed_sine(
         vibration_amplitude=direction.normal_part() * vibration_amplitude,
         frequency=own if frequency is None else frequency,
     )
-    if model.mean_gap is not MeanGap.AT_REST:
+    if model.mean_gap is not MeanGap.AT_REST and np.any(motion.displacement):
         motion = load_balanced_motion(rig.contact, motion)
     if not direction.is_in_plane:
         return motion
@@ -307,6 +307,8 @@ def decay_length_caveat(rig: Rig | ResolvedRig, *, vibration_amplitude: float | 
         length, its heights are not exponential, or R_q/lambda lies within the central 95 % of that population.
     """
     resolved = resolved_rig(rig)
+    if "normal" not in resolved.rig.friction_model.directions:  # to which the gap is nothing
+        return None
     contact, (low, high) = resolved.rig.contact, PUBLISHED_DECAY_LENGTH.central_range()
     heights = contact.heights
     if contact.decay_length is not None or not isinstance(heights, ExponentialHeights):

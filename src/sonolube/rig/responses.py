@@ -83,7 +83,7 @@ def frequency_response(rig: Rig | ResolvedRig, *, frequency: ArrayLike) -> Frequ
 
 
 def structure_in_contact(rig: Rig | ResolvedRig) -> Structure:
-    """Structure of a rig with the contact as a spring of its stiffness at rest.
+    """Structure of a rig with the contact as a spring of its stiffness at rest, which a tip in the plane does not have.
 
     Raises
     ------
@@ -93,6 +93,8 @@ def structure_in_contact(rig: Rig | ResolvedRig) -> Structure:
         If its load leaves no separation.
     """
     resolved = resolved_rig(rig)
+    if resolved.rig.direction.is_in_plane:
+        return driven_rig(resolved.rig).structure
     stiffness = float(normal_stiffness(resolved.rig.contact, separation=resolved.separation))
     return with_contact_spring(driven_rig(resolved.rig).structure, normal_stiffness=stiffness)
 
