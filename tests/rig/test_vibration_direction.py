@@ -1,6 +1,7 @@
 """Direction of a rig's vibration: words, angles, second components, limits into each other, refusals in one line."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,17 +11,24 @@ from scipy.special import ellipk
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.models.friction import torsional_vibration_ratio
 from sonolube.rig import Rig, friction_point, operating_points, point_batch, read_rig, simulate, wear_point
+from sonolube.rig.contact_temperature import temperature_point, thermal_solid
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.rig.responses import simulation_arrays
 from sonolube.rig.vibration import steady_vibration
 from sonolube.rig.vibration_direction import NORMAL, SAME_DIRECTION, VibrationDirection
 
 RIGS = Path("examples/rigs")
-BRISTLE = "friction.model=bristle_with_holder"
+BRISTLE, COULOMB, SPRINGS = (
+    f"friction.model={name}" for name in ("bristle_with_holder", "coulomb", "asperity_stick_slip")
+)
+WITHIN = ("vibration.direction=", "vibration.vibration_direction=")
 
 
 def tribometer(*changes: str) -> Rig:
-    return read_rig(RIGS / "tribometer.toml", changes=changes)
+    """Tribometer with changes; by Coulomb's law where a direction within the plane comes without a model."""
+    named = any(change.startswith("friction.model=") for change in changes)
+    within = any(change.startswith(WITHIN) and not change.endswith(("normal", "perpendicular")) for change in changes)
+    return read_rig(RIGS / "tribometer.toml", changes=[*changes, *([COULOMB] if within and not named else [])])
 
 
 def coulomb(*changes: str) -> float:
@@ -85,7 +93,7 @@ def test_a_second_component_along_is_the_in_plane_fraction_of_old_files(model: s
     )
     assert friction_point(new).friction_ratio == approx(friction_point(old).friction_ratio, rel=1e-9)
     assert resolved_rig(old).direction == resolved_rig(new).direction
-    voltage = {"voltage_peak_to_peak": [5.0, 15.0], "voltage_offset": [2.5, 7.5]}
+    voltage: dict[str, Any] = {"voltage_peak_to_peak": [5.0, 15.0], "voltage_offset": [2.5, 7.5]}
     one, other = (point_batch(rig, **voltage).numbers["friction_ratio"] for rig in (old, new))
     assert other == approx(one, rel=1e-9)
 
@@ -101,6 +109,7 @@ def test_a_second_amplitude_is_the_fraction_of_the_main_one() -> None:
 def test_a_normal_second_component_of_an_in_plane_vibration_is_the_same_ellipse() -> None:
     """A main part along with a second one along the normal, and the other way round, scaled and delayed."""
     one = tribometer(
+        SPRINGS,
         "vibration.direction=along",
         "vibration.second_direction=normal",
         "vibration.second_fraction=0.5",
@@ -188,7 +197,7 @@ def test_wear_within_the_plane_has_no_number() -> None:
             ["vibration.second_direction=along", "vibration.second_fraction=0.2", "vibration.second_amplitude=1um"],
             "give either second_amplitude or second_fraction",
         ),
-        (["vibration.direction=along", "friction.in_plane_fraction=0.2"], "say the same twice"),
+        (["vibration.direction=along", "friction.in_plane_fraction=0.2", SPRINGS], "say the same twice"),
         (
             ["vibration.direction=across", BRISTLE],
             "friction.model: bristle_with_holder has no law for a vibration across",
@@ -202,6 +211,39 @@ def test_a_direction_without_meaning_is_refused_in_one_line(changes: list[str], 
         tribometer(*changes)
     assert message in str(refusal.value)
     assert "\n" not in str(refusal.value)
+
+
+def test_a_direction_within_the_plane_asks_for_a_model() -> None:
+    with raises(InvalidInput, match=r"friction\.model: missing; of a vibration along the sliding take coulomb"):
+        read_rig(RIGS / "tribometer.toml", changes=["vibration.direction=along"])
+
+
+def test_springs_of_normal_vibration_miss_what_littmann_measured_along() -> None:
+    """The lowest ratio by the memory length of vibration along the normal, against a reduction of up to 70 %."""
+    printed = ("drive.frequency=60kHz", "vibration.vibration_amplitude=0.6897um", "sliding.sliding_speed=1mm/s")
+    by = {
+        name: friction_point(read_rig(RIGS / "vibrating_base.toml", changes=[*printed, f"friction.model={name}"]))
+        for name in ("asperity_stick_slip", "coulomb")
+    }
+    assert by["asperity_stick_slip"].friction_ratio == approx(0.635, abs=0.01)
+    assert by["coulomb"].friction_ratio < 0.3
+    assert "at least 0.63" in by["asperity_stick_slip"].caveats[0]
+
+
+def test_friction_within_the_plane_heats_by_its_whole_path() -> None:
+    """Power along the sliding by its closed form; the mean force alone would be far less."""
+    rig = tribometer("vibration.direction=along")
+    solid = thermal_solid("aluminium_2024")
+    given: dict[str, Any] = {"pin": solid, "disc": solid, "heat_capacity": 5.0, "thermal_conductance": 0.1}
+    point = temperature_point(rig, **given, duration=60.0)
+    zeta = rig.sliding_speed / peak_velocity(rig)
+    path = 2 / np.pi * (np.arcsin(zeta) + np.sqrt(1 / zeta**2 - 1))
+    dry = rig.friction_coefficient * rig.normal_load * rig.sliding_speed
+    assert point.frictional_heat_rate + point.vibration_heat_rate == approx(path * dry, rel=1e-4)
+    assert temperature_point(rig, **given, duration=60.0, vibration_heat_rate=0.5).vibration_heat_rate == 0.5
+    springs = tribometer("vibration.direction=along", SPRINGS)
+    with raises(InvalidInput, match=r"give that heat as vibration_heat, or take friction\.model coulomb"):
+        temperature_point(springs, **given, duration=60.0)
 
 
 def test_what_needs_the_motion_along_the_normal_refuses_and_says_what_to_do() -> None:

@@ -66,7 +66,7 @@ from .models.asperity_stick_slip_sine import (
     tabulated_stick_slip_ratio as tabulated_stick_slip_ratio,
 )
 from .models.bristle_with_holder import BristleWithHolder as BristleWithHolder
-from .models.coulomb import Coulomb as Coulomb
+from .models.coulomb import Coulomb as Coulomb, sliding_power_ratio as sliding_power_ratio
 from .models.dong_2015 import (
     Dong2015FullPeriod as Dong2015FullPeriod,
     Dong2015HalfPeriod as Dong2015HalfPeriod,

@@ -283,6 +283,11 @@ class RigFile(Section):
                 "friction.in_plane_fraction and a direction in the table vibration say the same twice: keep"
                 " vibration.second_direction, second_fraction and second_phase"
             )
+        if path.is_in_plane and "model" not in self.friction.model_fields_set:
+            raise ValueError(
+                f"friction.model: missing; of a vibration {path.text} take coulomb, or one of the models with springs,"
+                " asperity_stick_slip"
+            )
         missing = path.parts - model.directions - {"normal"}
         if missing:
             able = [name for name, each in FRICTION_MODELS.items() if path.parts - {"normal"} <= each.directions]

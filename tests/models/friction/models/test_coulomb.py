@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 from pytest import approx
-from scipy.special import ellipk
+from scipy.special import ellipe, ellipk
 from tests.models.friction.models.test_models import CONTACT
 
 from sonolube.checks import Floats
 from sonolube.models.contact import ContactMotion, normal_force, separation, sinusoidal_motion
-from sonolube.models.friction import AsperityStickSlip, Coulomb
+from sonolube.models.friction import AsperityStickSlip, Coulomb, sliding_power_ratio
 
 LOAD, FREQUENCY, AMPLITUDE = 3.0, 30e3, 1e-6
 PEAK = 2 * np.pi * FREQUENCY * AMPLITUDE
@@ -107,6 +107,15 @@ def test_the_mean_power_of_friction_is_never_negative(angle: float, size: float,
     vibration = np.mean(load * ((v + u) * u + w * w) / np.hypot(v + u, w))
     assert drive + vibration >= -1e-4 * v
     assert drive + vibration == approx(np.mean(load * np.hypot(v + u, w)), rel=2e-3)
+
+
+def test_the_power_of_friction_along_and_across_has_its_closed_forms() -> None:
+    for speed, zeta in ((0.05, 0.05 / PEAK), (3 * PEAK, 3.0)):
+        along = sliding_power_ratio(motion(along=1), sliding_speed=speed)
+        below = 2 / np.pi * (np.arcsin(min(zeta, 1)) + np.sqrt(max(1 / zeta**2 - 1, 0)))
+        assert along == approx(below if zeta < 1 else 1, rel=1e-5)
+        across = sliding_power_ratio(motion(across=1), sliding_speed=speed)
+        assert across == approx(2 / np.pi * np.sqrt(1 + 1 / zeta**2) * ellipe(1 / (1 + zeta**2)), rel=1e-6)
 
 
 def test_without_motion_within_the_plane_friction_follows_the_mean_force() -> None:

@@ -6,7 +6,7 @@ from typing import ClassVar, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sonolube.checks import Floats
+from sonolube.checks import Floats, require_positive
 from sonolube.execution.compilation import kernel
 from sonolube.models.contact.contact_motion import ContactMotion
 from sonolube.models.contact.period_mean import richardson_period_mean
@@ -74,6 +74,42 @@ class Coulomb(FrictionModel):
             return _weighted_direction(sampled.normal_force / sampled.normal_load, along, across, v_r)
 
         return richardson_period_mean(mean, motion)
+
+
+_POWER_SAMPLES = 8192  # per period, of a velocity that may turn within it
+
+
+def sliding_power_ratio(motion: ContactMotion, *, sliding_speed: float) -> float:
+    r"""Power of friction by Coulomb's law under a motion over that of sliding without it. []
+
+    Parameters
+    ----------
+    motion : ContactMotion
+    sliding_speed : float
+        Mean sliding speed. [m/s]
+
+    Returns
+    -------
+    float
+        At least the mean normal force over the load; the drive of the vibration supplies what exceeds the ratio of the
+        forces.
+
+    Raises
+    ------
+    InvalidInput
+        If the speed is not positive.
+
+    Notes
+    -----
+    .. math:: \left\langle \frac{F_n(t)}{F_N}\, \frac{\sqrt{(v_r + \dot u)^2 + \dot w^2}}{v_r} \right\rangle
+
+    to 1e-5. Along the sliding it is :math:`\frac2\pi (\arcsin\zeta + \sqrt{1/\zeta^2 - 1})` below the peak velocity.
+    """
+    v_r = float(require_positive(sliding_speed=sliding_speed))
+    sampled = motion.resampled(max(_POWER_SAMPLES, motion.displacement.size))
+    rate = sampled.frequency * sampled.displacement.size
+    along, across = (0.0 if each is None else _rates(each, rate) for each in (sampled.along, sampled.across))
+    return float(np.mean(sampled.normal_force / sampled.normal_load * np.hypot(v_r + along, across))) / v_r
 
 
 def _rates(values: Floats, rate: float) -> Floats:
