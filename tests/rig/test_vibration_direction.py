@@ -10,7 +10,7 @@ from scipy.special import ellipk
 
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.models.friction import torsional_vibration_ratio
-from sonolube.rig import Rig, friction_point, operating_points, point_batch, read_rig, simulate, wear_point
+from sonolube.rig import Rig, friction_point, operating_points, point_batch, read_rig, rig_from, simulate, wear_point
 from sonolube.rig.contact_temperature import temperature_point, thermal_solid
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.rig.responses import simulation_arrays
@@ -189,14 +189,9 @@ def test_wear_within_the_plane_has_no_number() -> None:
         (["vibration.direction=sideways"], "vibration.direction"),
         (["vibration.direction=torsional"], "needs torsion_radius"),
         (["vibration.torsion_radius=2mm"], 'torsion_radius belongs to direction "torsional"'),
-        (["vibration.direction=along", "vibration.vibration_direction=3deg"], "give either direction or"),
         (["vibration.second_direction=along"], "needs second_amplitude or second_fraction"),
         (["vibration.second_fraction=0.2"], "give second_direction too"),
         (["vibration.second_direction=normal", "vibration.second_fraction=0.2"], "that of the vibration itself"),
-        (
-            ["vibration.second_direction=along", "vibration.second_fraction=0.2", "vibration.second_amplitude=1um"],
-            "give either second_amplitude or second_fraction",
-        ),
         (["vibration.direction=along", "friction.in_plane_fraction=0.2", SPRINGS], "say the same twice"),
         (
             ["vibration.direction=across", BRISTLE],
@@ -211,6 +206,28 @@ def test_a_direction_without_meaning_is_refused_in_one_line(changes: list[str], 
         tribometer(*changes)
     assert message in str(refusal.value)
     assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("entries", "message"),
+    [
+        ({"direction": "along", "vibration_direction": "3 deg"}, "give either direction or vibration_direction"),
+        ({"second_direction": "along", "second_fraction": 0.2, "second_amplitude": "1 um"}, "got both"),
+    ],
+)
+def test_a_file_says_a_thing_once(entries: dict[str, Any], message: str) -> None:
+    content = tribometer().content()
+    content["vibration"] |= entries
+    with raises(InvalidInput, match=message):
+        rig_from(content)
+
+
+def test_an_angle_takes_the_place_of_a_word_and_of_another_size() -> None:
+    rig = read_rig(RIGS / "vibrating_base.toml", changes=["vibration.vibration_direction=20deg"])
+    assert rig.direction.angle == approx(np.radians(20))
+    assert rig.replace("vibration.direction", "across").direction.angle == approx(np.pi / 2)
+    second = tribometer("vibration.second_direction=across", "vibration.second_fraction=0.2")
+    assert second.replace("vibration.second_amplitude", "1 um").direction.second_fraction == approx(0.4)
 
 
 def test_a_direction_within_the_plane_asks_for_a_model() -> None:

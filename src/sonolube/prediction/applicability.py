@@ -207,6 +207,10 @@ class FrictionInterval:
 def friction_interval(rig: Rig | ResolvedRig) -> FrictionInterval:
     """Interval of the friction ratio of a rig at its operating point, without own runs; equal to that of `predict`."""
     resolved = resolved_rig(rig)
+    if not resolved.rig.direction.is_normal:
+        return FrictionInterval(
+            reason=f"too few tests of vibration {resolved.rig.direction.text} are published to learn from"
+        )
     try:
         limits = applicability(resolved.rig)
         if limits.refusal:
