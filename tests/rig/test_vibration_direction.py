@@ -8,8 +8,10 @@ import pytest
 from pytest import approx, raises
 from scipy.special import ellipk
 
+import sonolube as sl
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.models.friction import torsional_vibration_ratio
+from sonolube.prediction.applicability import friction_interval
 from sonolube.rig import Rig, friction_point, operating_points, point_batch, read_rig, rig_from, simulate, wear_point
 from sonolube.rig.contact_temperature import temperature_point, thermal_solid
 from sonolube.rig.resolved_rig import resolved_rig
@@ -261,6 +263,41 @@ def test_friction_within_the_plane_heats_by_its_whole_path() -> None:
     springs = tribometer("vibration.direction=along", SPRINGS)
     with raises(InvalidInput, match=r"give that heat as vibration_heat, or take friction\.model coulomb"):
         temperature_point(springs, **given, duration=60.0)
+
+
+KNOWN: dict[str, Any] = {"pin": "m50", "disc": "m50", "load": "5N", "speed": "0.2m/s", "frequency": "20kHz"}
+
+
+@pytest.mark.parametrize(
+    ("given", "angle"),
+    [({"direction": "along"}, 0.0), ({"direction": "transverse"}, np.pi / 2), ({"direction": "30deg"}, np.pi / 6)],
+)
+def test_a_new_rig_states_its_direction_and_takes_coulombs_law(given: dict[str, Any], angle: float) -> None:
+    rig = sl.new(**KNOWN, amplitude="3um", **given).rig
+    assert rig.direction.angle == approx(angle)
+    assert rig.friction_model.name == "coulomb"
+
+
+def test_a_new_ring_has_its_radius_and_a_normal_one_nothing_new() -> None:
+    ring = sl.new(**KNOWN, amplitude="3um", direction="torsional", torsion_radius="5mm").rig
+    assert ring.direction.torsion_radius == approx(5e-3)
+    plain, said = (sl.new(**KNOWN, amplitude="3um", **each).rig_text for each in ({}, {"direction": "normal"}))
+    assert plain == said
+    for given, message in (
+        ({"direction": "torsional"}, "needs torsion_radius"),
+        ({"direction": "along", "torsion_radius": "5mm"}, "leave it out"),
+        ({"direction": "sideways"}, "unknown direction of vibration 'sideways'"),
+        ({"direction": "3 mm"}, "direction"),
+    ):
+        with raises(SonolubeError, match=message):
+            sl.new(**KNOWN, amplitude="3um", **given)
+
+
+def test_what_is_learnt_along_the_normal_refuses_a_direction() -> None:
+    rig = read_rig(RIGS / "vibrating_base.toml")
+    with raises(InvalidInput, match="a prediction is of vibration along the normal, but this one is along the sliding"):
+        sl.predict(rig)
+    assert "too few tests" in friction_interval(rig).reason
 
 
 def test_what_needs_the_motion_along_the_normal_refuses_and_says_what_to_do() -> None:
