@@ -148,6 +148,7 @@ MODES = {
             "--speed": "0.1m/s",
             "--frequency": "21kHz",
             "--amplitude": "2um",
+            "--direction": "along",
             "--finish": "N8",
             "--pin-finish": "N8",
             "--disc-finish": "N8",
@@ -168,6 +169,11 @@ MODES = {
         "new",
         ("OUT/rig.toml", *KNOWN, "--amplitude", "3um", "--speed", "100 rpm", "--track-diameter", "50mm"),
         {"--track-diameter": "30mm"},
+    ),
+    "new of a ring": Mode(
+        "new",
+        ("OUT/rig.toml", *KNOWN, "--amplitude", "3um", "--direction", "torsional", "--torsion-radius", "20mm"),
+        {"--torsion-radius": "15mm"},
     ),
     "new with an actuator": Mode(
         "new",

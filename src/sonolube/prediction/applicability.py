@@ -13,7 +13,7 @@ from sonolube.models.thermal import EllipticSource, contact_rise
 from sonolube.prediction.bodies import named_bodies
 from sonolube.prediction.evidence import published_rigs
 from sonolube.prediction.hierarchy import central_interval
-from sonolube.prediction.inputs import RigInputs, rig_inputs
+from sonolube.prediction.inputs import RigInputs, rig_inputs, within_plane_refusal
 from sonolube.prediction.posterior import learned
 from sonolube.prediction.predictive import DRAWS, ratio_draws
 from sonolube.rig import ResolvedRig, Rig, thermal_solid
@@ -71,6 +71,8 @@ def applicability(rig: Rig, *, lubricant: bool = False) -> Applicability:
 def _in_plane(rig: Rig) -> str | None:
     """Refusal of a vibration that is not along the normal alone."""
     fraction = getattr(rig.friction_model, "in_plane_fraction", 0.0)
+    if not rig.direction.is_normal:
+        return within_plane_refusal(rig)
     if not fraction:
         return None
     return (
@@ -205,6 +207,10 @@ class FrictionInterval:
 def friction_interval(rig: Rig | ResolvedRig) -> FrictionInterval:
     """Interval of the friction ratio of a rig at its operating point, without own runs; equal to that of `predict`."""
     resolved = resolved_rig(rig)
+    if not resolved.rig.direction.is_normal:
+        return FrictionInterval(
+            reason=f"too few tests of vibration {resolved.rig.direction.text} are published to learn from"
+        )
     try:
         limits = applicability(resolved.rig)
         if limits.refusal:

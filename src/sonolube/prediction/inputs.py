@@ -137,6 +137,8 @@ def rig_inputs(rig: Rig | ResolvedRig) -> RigInputs:
     """Inputs of a prediction from a rig file: its own distributions where it has them, else usual ones."""
     resolved = resolved_rig(rig)
     rig = resolved.rig
+    if not rig.direction.is_normal:
+        raise InvalidInput(within_plane_refusal(rig))
     if rig.drive is None:
         raise InvalidInput(f"{rig.title}: a prediction needs a frequency; give drive.frequency")
     if not rig.sliding_speed > 0:
@@ -155,6 +157,14 @@ def rig_inputs(rig: Rig | ResolvedRig) -> RigInputs:
         normal_load=rig.normal_load,
         voltage_peak_to_peak=rig.drive.voltage_peak_to_peak,
         point=point,
+    )
+
+
+def within_plane_refusal(rig: Rig) -> str:
+    """Why there is no prediction of a vibration with a part within the plane, and what to do instead."""
+    return (
+        f"{rig.title}: a prediction is of vibration along the normal, but this one is {rig.direction.text}; use"
+        " friction, which gives the theory, or fit own runs"
     )
 
 

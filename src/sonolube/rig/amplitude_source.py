@@ -9,7 +9,7 @@ import numpy as np
 
 from sonolube.errors import InvalidInput
 from sonolube.models.contact import RoughContact, separation
-from sonolube.models.dynamics import GapLaw, Status, Structure, static_contact, steady_state
+from sonolube.models.dynamics import GapLaw, Status, Structure, drive_receptance, static_contact, steady_state
 from sonolube.rig.driven_rig import DrivenRig, DriveVoltage, driven_rig
 from sonolube.rig.record import AMPLITUDE_SOURCES, AmplitudeSource, MeasuredUnder, Rig
 from sonolube.text.units import format_si
@@ -110,6 +110,19 @@ def computed_amplitude(rig: DrivenRig, *, voltage: DriveVoltage, gap_law: GapLaw
         normal_load=rig.normal_load,
     )
     return _amplitude(own, 1.0)
+
+
+def tip_amplitude(rig: DrivenRig, *, voltage: DriveVoltage) -> ResolvedVibration:
+    """Vibration within the plane by the structure of a rig: that of its free tip, which friction does not hold back."""
+    harmonic = float(np.abs(voltage.harmonics()[0]))
+    amplitude = harmonic * float(np.abs(drive_receptance(rig.structure, frequency=np.array([rig.drive.frequency])))[0])
+    volts = rig.voltage_peak_to_peak
+    return ResolvedVibration(
+        source="computed",
+        text="computed from stack and structure, the tip free within the plane",
+        sine_amplitude=amplitude,
+        per_volt=amplitude / volts if volts else None,
+    )
 
 
 def _measurement_text(rig: Rig) -> str:

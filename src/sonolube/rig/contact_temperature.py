@@ -10,11 +10,13 @@ from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.facts.materials import material
 from sonolube.models import thermal
+from sonolube.models.friction.models.coulomb import sliding_power_ratio
 from sonolube.models.thermal import contact_history
 from sonolube.models.thermal.flash import FLASH_MODELS
 from sonolube.rig.record import Rig
 from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
 from sonolube.rig.simulation import vibrated_friction
+from sonolube.rig.vibration import steady_vibration
 
 _STEPS = 200
 
@@ -149,6 +151,7 @@ def temperature_point(
     resolved.require_separation()
     require_positive(heat_capacity=heat_capacity, thermal_conductance=thermal_conductance, duration=duration)
     levels = np.atleast_1d(require_non_negative(vibration_heat_rate=vibration_heat_rate))
+    is_stated = bool(levels.any())
     if not 0 <= dry_duration < duration:
         raise InvalidInput(
             f"dry_duration must lie from 0 to below the {duration:g} s of the test, got {dry_duration!r} s"
@@ -165,6 +168,7 @@ def temperature_point(
         if friction_ratio is None
         else require_non_negative(friction_ratio=friction_ratio)
     )
+    levels = levels if rig.direction.is_normal or is_stated else levels + _heat_within_plane(resolved, ratio)
     times, heat_rates, shaken = _steps(duration, dry_duration, levels)
     history = partial(contact_history.contact_temperature_history, contact, time=times, sliding_speed=rig.sliding_speed)
     without = history(friction_force=intrinsic, vibration_heat_rate=0.0)
@@ -192,6 +196,20 @@ def temperature_point(
         with_vibration=warmed,
         without_vibration=without,
     )
+
+
+def _heat_within_plane(resolved: ResolvedRig, ratio: float) -> float:
+    """Heat that a vibration within the plane adds to that of the mean friction force, by Coulomb's law. [W]"""
+    rig = resolved.rig
+    if rig.friction_model.name != "coulomb":
+        raise InvalidInput(
+            f"{rig.title}: the vibration is {rig.direction.text}, so that it heats the contact by more than the mean"
+            " friction force; give that heat as vibration_heat, or take friction.model coulomb"
+        )
+    motions = steady_vibration(resolved).motions
+    places = [place for motion in motions for place in rig.direction.over_contact(rig.direction.over_gap(motion))]
+    power = sum(share * sliding_power_ratio(motion, sliding_speed=rig.sliding_speed) for share, motion in places)
+    return rig.friction_coefficient * rig.normal_load * rig.sliding_speed * (power / len(motions) - ratio)
 
 
 def _steps(duration: float, dry_duration: float, levels: Floats) -> tuple[Floats, Floats, NDArray[np.bool_]]:

@@ -36,9 +36,18 @@ def simulation_chart(result: "xr.Dataset | LabelledArrays") -> Chart:
     attributes = result.attrs
     rest, load, rise = (attributes[name] for name in ("separation_at_rest_m", "normal_load_N", "mean_displacement_m"))
     lost = _zones(time, normal_force < _CONTACT_LOSS_FORCE * load, label="contact lost")
+    within = [
+        Line(x=time, y=1e6 * result[name].to_numpy(), label=label, colour=colour)
+        for name, label, colour in (
+            ("displacement_along", "along the sliding", 2),
+            ("displacement_across", "across the sliding", 4),
+        )
+        if name in result
+    ]
     gap: tuple[Part, ...] = (
         *lost,
-        Line(x=time, y=1e6 * displacement),
+        Line(x=time, y=1e6 * displacement, label="along the normal" if within else ""),
+        *within,
         Rule(along="y", value=1e6 * rise, label=f"mean gap, {1e6 * (rest + rise):.2f} µm", colour=1, dash=1),
         Rule(along="y", value=0.0, label=f"gap at rest, {1e6 * rest:.2f} µm"),
     )

@@ -333,15 +333,16 @@ def stated_vibrations(resolved: ResolvedRig, distinct: Floats, *, commanded: boo
         level, _, f, load = distinct[:, setting].tolist()
         if not commanded and rig.drive is not None and abs(f - rig.drive.frequency) > _SAME_FREQUENCY * f:
             own = format_si(rig.drive.frequency, "Hz", digits=4)
-            return PointVibration(
-                status=REFUSED, reason=f"the amplitude {used.source} holds at {own} only: choose the amplitude computed"
-            )
+            instead = "keep drive.frequency" if used.source == "computed" else "choose the amplitude computed"
+            return PointVibration(status=REFUSED, reason=f"the amplitude {used.source} holds at {own} only: {instead}")
         amplitude = level if commanded else used.amplitude_at(level)
         try:
             rest = float(separation(rig.contact, normal_load=load))
             motion = prescribed_sine(rig, vibration_amplitude=amplitude, frequency=f, normal_load=load)
         except OutsideRange as refusal:
             return PointVibration(status=OUTSIDE_MODEL_RANGE, reason=f"{OUTSIDE_MODEL_RANGE}: {refusal}")
+        except InvalidInput as refusal:
+            return PointVibration(status=REFUSED, reason=str(refusal))
         if rest <= 0:
             return PointVibration(status=REFUSED, reason=_no_separation(load))
         numbers = (

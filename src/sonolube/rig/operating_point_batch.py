@@ -239,7 +239,7 @@ def _friction(
     found = _no_friction(speeds.size)
     open_points = np.flatnonzero(place >= 0)
     moving = open_points[speeds[open_points] > 0]
-    if moving.size:
+    if moving.size and rig.direction.is_normal:
         _fill(found, moving, _batched_friction(rig, states, place[moving], speeds[moving], tolerance))
         open_points = open_points[np.isnan(found.raw_friction_ratio[open_points])]
     for members in conditions.points_by_vibration(open_points, place):

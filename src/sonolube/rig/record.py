@@ -16,6 +16,7 @@ from sonolube.models.contact import ExponentialHeights, RoughContact, decay_leng
 from sonolube.models.dynamics import Structure
 from sonolube.models.friction.models import FRICTION_MODELS, FrictionModel
 from sonolube.rig.distribution import Distribution
+from sonolube.rig.vibration_direction import NORMAL, VibrationDirection
 from sonolube.text.units import format_si
 
 STATED = "as stated"
@@ -112,7 +113,7 @@ class Rig:
     sliding_speed : float
         Macroscopic relative speed. [m/s]
     vibration_amplitude : float or None
-        Measured vibration normal to the contact, zero to peak. [m]
+        Measured vibration in its direction, zero to peak. [m]
     measured_under : MeasuredUnder or None
         Drive and load of that measurement, where they are not the rig's own.
     amplitude_per_volt : float or None
@@ -121,6 +122,8 @@ class Rig:
         Amplitude computed from the waveguide, where the rig has one, in m.
     amplitude_source : {"measured", "computed", "waveguide", "per-volt"} or None
         Source of the amplitude; the first of these that the rig has where None.
+    direction : VibrationDirection
+        Direction of the vibration, along the normal of the contact where nothing is said, and its second component.
     calibration : float or None
         Factor by which the drive of the structure was scaled to the measured amplitude, where it was.
     drive : Drive or None
@@ -161,6 +164,7 @@ class Rig:
     amplitude_per_volt: float | None = None
     waveguide_amplitude: float | None = None
     amplitude_source: AmplitudeSource | None = None
+    direction: VibrationDirection = NORMAL
     calibration: float | None = None
     drive: Drive | None = None
     capacitance: float | None = None
@@ -184,6 +188,8 @@ class Rig:
             known = list(DECAY_LENGTH_ORIGINS)
             raise UnknownName.among(known, kind="origin of the decay length", name=self.decay_length_origin)
         check_stated(require_positive, self, "capacitance")
+        if self.vibration_amplitude is not None:
+            self.direction.require_amplitude(self.vibration_amplitude)
         if not self.title.strip():
             raise InvalidInput("title must not be empty")
 
@@ -280,6 +286,8 @@ class Rig:
             ("yield strength", format_si(pair.yield_strength, "Pa")),
             ("vibration amplitude", self._amplitude_text()),
         ]
+        if not self.direction.is_normal:
+            rows.append(("vibration direction", self.direction.text))
         if self.drive is not None:
             voltage = self.drive.voltage_peak_to_peak
             volts = [] if voltage is None else [f"{format_si(voltage, 'V')} peak to peak"]

@@ -11,11 +11,12 @@ from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, OutsideRange, SonolubeError
 from sonolube.models.contact import ExponentialHeights, RoughContact
 from sonolube.models.contact.rough import decay_length, normal_force, normal_stiffness, separation, separation_range
-from sonolube.models.dynamics import ExponentialGap, GapLaw, StartUpRamp, TabulatedGap
+from sonolube.models.dynamics import ExponentialGap, GapLaw, StartUpRamp, TabulatedGap, contact_receptance
 from sonolube.models.friction.models import FrictionModel
 from sonolube.rig import amplitude_source
 from sonolube.rig.driven_rig import DrivenRig, DriveVoltage, actuator_capacitance, driven_rig
 from sonolube.rig.record import AMPLITUDE_SOURCES, AmplitudeSource, Rig
+from sonolube.rig.vibration_direction import VibrationDirection
 from sonolube.text.units import format_si
 
 _POINTS = 2101  # of the table of a contact's force: 50 for each standard deviation of summit heights
@@ -45,6 +46,15 @@ class ResolvedRig:
         """Voltage of the drive, for rigs that have one."""
         assert self.rig.drive is not None
         return DriveVoltage(drive=self.rig.drive)
+
+    @cached_property
+    def direction(self) -> VibrationDirection:
+        """Direction of the vibration with its second component, that of the friction model's parameters included."""
+        fraction = getattr(self.rig.friction_model, "in_plane_fraction", 0.0)
+        if not fraction:
+            return self.rig.direction
+        phase = getattr(self.rig.friction_model, "in_plane_phase", 0.0)
+        return replace(self.rig.direction, second_direction="along", second_fraction=fraction, second_phase=phase)
 
     @cached_property
     def sources(self) -> tuple[AmplitudeSource, ...]:
@@ -81,6 +91,11 @@ class ResolvedRig:
         """
         if self.rig.structure is None:
             return driven_rig(self.rig)  # which says what is missing
+        if self.rig.direction.is_in_plane:
+            raise InvalidInput(
+                f"{self.rig.title}: this needs the motion of the structure along the normal, but the vibration is"
+                f" {self.rig.direction.text}; use friction or simulate, or leave vibration.direction out"
+            )
         if self.vibration.driven is None:
             raise InvalidInput(
                 f"{self.rig.title}: this needs the motion of the structure, not a sine of the amplitude"
@@ -156,7 +171,9 @@ def drive_and_load(resolved: ResolvedRig) -> dict[str, Any]:
 
 def resolved_vibration(resolved: ResolvedRig) -> amplitude_source.ResolvedVibration:
     """Vibration of a rig by the source that it names, else measured, computed, waveguide, per volt."""
-    return _vibration_by(amplitude_source.chosen_source(resolved.rig, resolved.sources), resolved)
+    found = _vibration_by(amplitude_source.chosen_source(resolved.rig, resolved.sources), resolved)
+    direction = resolved.rig.direction
+    return found if direction.is_normal else replace(found, text=f"{found.text}; {direction.text}")
 
 
 def rest_separation(rig: Rig) -> float:
@@ -211,8 +228,28 @@ def source_caveats(resolved: ResolvedRig, *, vibration_amplitude: float) -> tupl
     )
 
 
+def held_back_caveats(resolved: ResolvedRig, *, vibration_amplitude: float) -> tuple[str, ...]:
+    """Line where friction, left out of a computed motion within the plane, could change its amplitude much."""
+    rig, used = resolved.rig, resolved.vibration
+    if not (rig.direction.is_in_plane and used.source == "computed" and rig.drive and rig.structure):
+        return ()
+    limit = rig.friction_coefficient * rig.normal_load
+    moved = float(np.abs(contact_receptance(rig.structure, frequency=np.array([rig.drive.frequency])))[0])
+    change = 4 / np.pi * limit * moved
+    if change <= amplitude_source.AMPLITUDE_ERROR * vibration_amplitude:
+        return ()
+    return (
+        f"the friction force, up to {format_si(limit, 'N')}, is left out of the motion of the tip and could change its"
+        f" amplitude by up to {format_si(change, 'm')}; measure it and give vibration.vibration_amplitude",
+    )
+
+
 def _vibration_by(source: AmplitudeSource, resolved: ResolvedRig) -> amplitude_source.ResolvedVibration:
     """Vibration of a rig by one of the sources that it has."""
+    if source == "computed" and resolved.rig.direction.is_in_plane:
+        return amplitude_source.tip_amplitude(driven_rig(resolved.rig), voltage=resolved.voltage)
+    if source == "measured" and resolved.rig.direction.is_in_plane:
+        return amplitude_source.VIBRATIONS[source](resolved.rig)
     if source == "measured" and resolved.rig.structure is not None:
         driven = driven_rig(resolved.rig)
         return amplitude_source.scaled_vibration(driven, voltage=resolved.voltage, gap_law=resolved.gap_law)

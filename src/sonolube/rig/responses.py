@@ -83,7 +83,7 @@ def frequency_response(rig: Rig | ResolvedRig, *, frequency: ArrayLike) -> Frequ
 
 
 def structure_in_contact(rig: Rig | ResolvedRig) -> Structure:
-    """Structure of a rig with the contact as a spring of its stiffness at rest.
+    """Structure of a rig with the contact as a spring of its stiffness at rest, which a tip in the plane does not have.
 
     Raises
     ------
@@ -93,6 +93,8 @@ def structure_in_contact(rig: Rig | ResolvedRig) -> Structure:
         If its load leaves no separation.
     """
     resolved = resolved_rig(rig)
+    if resolved.rig.direction.is_in_plane:
+        return driven_rig(resolved.rig).structure
     stiffness = float(normal_stiffness(resolved.rig.contact, separation=resolved.separation))
     return with_contact_spring(driven_rig(resolved.rig).structure, normal_stiffness=stiffness)
 
@@ -216,9 +218,11 @@ def simulation_arrays(rig: Rig, result: Simulation) -> LabelledArrays:
     model. Attributes hold the texts of the result, its caveats and the assumptions of the rig.
     """
     vibration = result.vibration
-    motion = vibration.motions[0]
+    motion = rig.direction.over_gap(vibration.motions[0])
     time = np.arange(motion.displacement.size) / (motion.displacement.size * motion.frequency)
     values = {"time": time, "displacement": motion.displacement, "normal_force": motion.normal_force}
+    within = {"displacement_along": motion.along, "displacement_across": motion.across}
+    values |= {name: moved for name, moved in within.items() if moved is not None}
     moving = labelled(values, along="time", title=f"Steady motion of {rig.title}")
     scalars = {
         name: LabelledArray(dims=(), values=np.asarray(np.nan if value is None else value), attrs=labels(name))

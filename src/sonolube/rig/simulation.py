@@ -13,6 +13,7 @@ from sonolube.models.wear import WEAR_MODELS, cube_wear_rate
 from sonolube.rig.amplitude_source import ResolvedVibration
 from sonolube.rig.driven_rig import energy_balance
 from sonolube.rig.friction_and_wear import (
+    direction_caveats,
     mean_friction,
     mean_wear,
     range_text,
@@ -23,7 +24,7 @@ from sonolube.rig.friction_and_wear import (
 )
 from sonolube.rig.operating_point import COMPUTED, FrictionPoint, VibrationOrigin, WearPoint
 from sonolube.rig.record import Rig
-from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig, source_caveats
+from sonolube.rig.resolved_rig import ResolvedRig, held_back_caveats, resolved_rig, source_caveats
 from sonolube.rig.vibration import SteadyVibration, steady_vibration
 
 
@@ -277,6 +278,8 @@ def _wear_point(
         ratio, reason = mean_wear(resolved, vibration.motions, wear_model=model, vibration_amplitude=sine)
     if not reason and friction is not None and friction.reason and friction.friction_model == model:
         reason = friction.reason
+    if not reason and resolved.rig.direction.second_direction is not None:
+        caveats = (*caveats, "wear is by the motion along the normal; the path within the plane is left out")
     if not reason and not vibration.prescribed:
         caveats = (*caveats, *rise_caveats(vibration.motions, wear_model=model))
     still = float(cube_wear_rate(resolved.rig.contact, normal_load=resolved.rig.normal_load))
@@ -299,7 +302,7 @@ def _models_that_hold(resolved: ResolvedRig) -> str:
     """Range of the friction ratio by the other friction models that hold for a rig's vibration."""
     holding, rig = [], resolved.rig
     for name in FRICTION_MODELS:
-        if name == rig.friction_model.name:
+        if name == rig.friction_model.name or not rig.direction.parts <= FRICTION_MODELS[name].directions:
             continue
         other = resolved.with_friction_model(friction_model_named(rig, name))
         try:
@@ -333,8 +336,10 @@ def _stated_origin(used: ResolvedVibration) -> VibrationOrigin:
 
 
 def _caveats(resolved: ResolvedRig, vibration: SteadyVibration) -> tuple[str, ...]:
-    """Caveats of contact, amplitude, stack and gap."""
+    """Caveats of direction, contact, amplitude, stack and gap."""
     return (
+        *direction_caveats(resolved),
+        *held_back_caveats(resolved, vibration_amplitude=vibration.vibration_amplitude),
         *resting_caveats(resolved, vibration_amplitude=vibration.vibration_amplitude),
         *source_caveats(resolved, vibration_amplitude=vibration.vibration_amplitude),
         *([] if vibration.prescribed else _stack_caveats(resolved, vibration)),

@@ -24,6 +24,7 @@ from sonolube.models.contact import RoughContact, separation
 from sonolube.models.friction import FRICTION_MODELS, FrictionModel, MeanGap
 from sonolube.models.friction.models.range_check import checked_ratio
 from sonolube.rig import Rig, steady_vibration
+from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.validation.published_tests import Conditions
 
 RIGS: Final = {"tribometer": "ACDEF", "power map": "B", "welder": "G", "flextensional": "H"}
@@ -333,12 +334,16 @@ class VibratedRig:
         Coefficient of friction without vibration. []
     sliding_speed : float
         Sliding speed during vibration. [m/s]
-    vibration_amplitude : float
+    vibration_amplitude : float or None
         Amplitude along the surface normal. [m]
     frequency : float or None
         Frequency of the vibration. [Hz]
     in_plane_amplitude : float or None
         Amplitude along the sliding direction. [m]
+    vibration_direction : float or None
+        Angle between vibration and sliding within the plane. [rad]
+    vibration_velocity : float or None
+        Peak velocity of the vibration within the plane. [m/s]
     holder_stiffness : float or None
         Stiffness of the holder along the sliding direction. [N/m]
     holder_mass : float or None
@@ -350,9 +355,11 @@ class VibratedRig:
     normal_load: float
     friction_coefficient: float
     sliding_speed: float
-    vibration_amplitude: float
+    vibration_amplitude: float | None
     frequency: float | None = None
     in_plane_amplitude: float | None = None
+    vibration_direction: float | None = None
+    vibration_velocity: float | None = None
     holder_stiffness: float | None = None
     holder_mass: float | None = None
 
@@ -361,18 +368,6 @@ class VibratedRig:
         """Letter of no set, to which no rig-specific parameter applies."""
         return "-"
 
-    @property
-    def vibration_velocity(self) -> float | None:
-        """Peak velocity of the vibration along the sliding. [m/s]"""
-        if self.in_plane_amplitude is None or self.frequency is None:
-            return None
-        return 2 * pi * self.frequency * self.in_plane_amplitude
-
-    @property
-    def vibration_direction(self) -> float | None:
-        """Angle between in-plane vibration and sliding. [rad]"""
-        return None if self.in_plane_amplitude is None else 0.0
-
 
 def vibrated_rig(rig: Rig) -> VibratedRig:
     """Conditions of a rig at its operating point."""
@@ -380,13 +375,31 @@ def vibrated_rig(rig: Rig) -> VibratedRig:
     for name, value in (("vibration_amplitude", amplitude), ("sliding_speed", rig.sliding_speed)):
         if value == 0:
             raise InvalidInput(f"{rig.title}: {name} is 0; models of friction under vibration need it positive")
-    model = rig.friction_model
-    fraction, stiffness = getattr(model, "in_plane_fraction", 0.0), getattr(model, "holder_stiffness", inf)
+    stiffness = getattr(rig.friction_model, "holder_stiffness", inf)
+    normal, plane, angle = _amplitudes_by_direction(rig, amplitude)
+    frequency = None if rig.drive is None else rig.drive.frequency
     return VibratedRig(
         label=rig.title,
         **{name: getattr(rig, name) for name in _FIELDS_OF_RIG},
-        vibration_amplitude=amplitude,
-        frequency=None if rig.drive is None else rig.drive.frequency,
-        in_plane_amplitude=fraction * amplitude if fraction else None,
+        vibration_amplitude=normal,
+        frequency=frequency,
+        in_plane_amplitude=plane if angle == 0.0 else None,
+        vibration_direction=angle,
+        vibration_velocity=None if plane is None or frequency is None else 2 * pi * frequency * plane,
         holder_stiffness=stiffness if isfinite(stiffness) else None,
     )
+
+
+def _amplitudes_by_direction(rig: Rig, amplitude: float) -> tuple[float | None, float | None, float | None]:
+    """Amplitude along the normal and within the plane, and the angle of the latter to the sliding."""
+    direction = resolved_rig(rig).direction
+    if direction.is_normal:
+        return amplitude, None, None
+    if direction.direction == "normal" and direction.second_direction == "along":
+        return amplitude, direction.second_fraction * amplitude, 0.0
+    if direction.angle is None:
+        raise InvalidInput(
+            f"{rig.title}: the models compared are of vibration in one direction, but this one is {direction.text};"
+            " use friction"
+        )
+    return None, amplitude, direction.angle

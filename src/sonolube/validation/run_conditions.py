@@ -166,13 +166,14 @@ def _inputs(runs: "xr.Dataset", rig: Rig | None) -> dict[str, Floats]:
     frequency = np.nan if rig is None or rig.drive is None else rig.drive.frequency
     load = setting(runs, "normal_load", np.nan if rig is None else rig.normal_load)
     dry = setting(runs, "intrinsic_friction_force", np.nan) / load
+    angle = None if rig is None else rig.direction.angle
     coefficient = float(np.nanmean(dry)) if np.any(np.isfinite(dry)) else np.nan
     if rig is not None and not isfinite(coefficient):
         coefficient = rig.friction_coefficient
     return {
         "vibration_amplitude": _amplitudes(runs, rig),
         "vibration_velocity": setting(runs, "vibration_velocity", np.nan),
-        "vibration_direction": setting(runs, "vibration_direction", np.nan),
+        "vibration_direction": setting(runs, "vibration_direction", np.nan if angle is None else angle),
         "frequency": setting(runs, "frequency", frequency),
         "sliding_speed": setting(runs, "sliding_speed", speed),
         "normal_load": load,

@@ -28,7 +28,7 @@ def physical_keys(table: dict[str, object], path: str = "") -> Iterator[tuple[st
 @pytest.mark.parametrize("number", ["1e-30", "-1e30", "1e30", "nan", "inf"])
 def test_what_no_rig_has_is_refused_under_its_key(path: Path, number: str) -> None:
     keys = list(physical_keys(tomllib.loads(path.read_text(encoding="utf-8"))))
-    assert len(keys) > 9
+    assert len(keys) > 5
     for key, unit in keys:
         with raises(InvalidInput, match=rf"{key}: .*(lies beyond any rig: expected|is not a number)"):
             read_rig(path, changes=[f"{key}={number} {unit}"])

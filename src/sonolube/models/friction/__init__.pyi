@@ -7,6 +7,7 @@ from .laws.coulomb import (
     friction_coefficient as friction_coefficient,
     oblique_vibration_ratio as oblique_vibration_ratio,
     parallel_vibration_ratio as parallel_vibration_ratio,
+    torsional_vibration_ratio as torsional_vibration_ratio,
     transverse_vibration_ratio as transverse_vibration_ratio,
 )
 from .laws.dahl import (
@@ -65,6 +66,7 @@ from .models.asperity_stick_slip_sine import (
     tabulated_stick_slip_ratio as tabulated_stick_slip_ratio,
 )
 from .models.bristle_with_holder import BristleWithHolder as BristleWithHolder
+from .models.coulomb import Coulomb as Coulomb, sliding_power_ratio as sliding_power_ratio
 from .models.dong_2015 import (
     Dong2015FullPeriod as Dong2015FullPeriod,
     Dong2015HalfPeriod as Dong2015HalfPeriod,

@@ -62,9 +62,11 @@ def beyond_the_model(rig: "Rig | ResolvedRig", model: "FrictionModel", *, interv
     if not interval:
         return BeyondTheModel(error=None, interval=None)
     from sonolube.prediction.applicability import friction_interval
+    from sonolube.rig.resolved_rig import resolved_rig
     from sonolube.validation.assessment import unseen_error  # which fits, with scipy.optimize
 
-    return BeyondTheModel(error=unseen_error(model), interval=friction_interval(rig))
+    is_tested = resolved_rig(rig).rig.direction.is_normal  # as all tests behind that error
+    return BeyondTheModel(error=unseen_error(model) if is_tested else None, interval=friction_interval(rig))
 
 
 _OF_BOTH = attrgetter(
@@ -95,7 +97,7 @@ def measured_on(rig: Rig, *, vibration_amplitude: float) -> tuple[FrictionTest, 
 
     Roughness and asperity law are not compared: they are assumed for most tests.
     """
-    if rig.drive is None:
+    if rig.drive is None or not rig.direction.is_normal:
         return ()
     own = (*_OF_BOTH(rig), rig.drive.frequency, vibration_amplitude)
     return tuple(test for test in friction_tests() if _near(own, (*_OF_BOTH(test), *_OF_TEST(test))))

@@ -49,6 +49,10 @@ REPLACED: Final[Mapping[str, str]] = {
 ALTERNATIVES: Final[Mapping[str, tuple[str, ...]]] = {
     "contact.decay_length": ("contact.normal_stiffness", "contact.stiffness_load", "contact.decay_length_origin"),
     "contact.normal_stiffness": ("contact.decay_length", "contact.decay_length_origin"),
+    "vibration.direction": ("vibration.vibration_direction",),
+    "vibration.vibration_direction": ("vibration.direction", "vibration.torsion_radius"),
+    "vibration.second_amplitude": ("vibration.second_fraction",),
+    "vibration.second_fraction": ("vibration.second_amplitude",),
 }
 """Keys of which a file has one, each with the entries whose place it takes where it is set."""
 

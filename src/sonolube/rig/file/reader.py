@@ -248,6 +248,7 @@ def _rig(file: RigFile) -> Rig:
         amplitude_per_volt=None if file.actuator is None else file.actuator.amplitude_per_volt,
         waveguide_amplitude=_waveguide_amplitude(file, drive),
         amplitude_source=None if file.vibration is None else file.vibration.amplitude_source,
+        direction=file.direction(),
         drive=drive,
         capacitance=file.actuator.capacitance if file.actuator else None,
         stack=stack,

@@ -15,6 +15,7 @@ from sonolube.rig.file.contact_section import ContactSection, Text
 from sonolube.rig.file.section import NameIn, Section
 from sonolube.rig.file.structures import StructureSection
 from sonolube.rig.record import AmplitudeSource, MeasuredUnder, check_stated
+from sonolube.rig.vibration_direction import NORMAL, DirectionWord, SecondWord, VibrationDirection
 from sonolube.vocabulary import Quantity
 
 
@@ -154,21 +155,66 @@ class WaveguideSection(Section):
 
 
 class VibrationSection(Section):
-    """Vibration normal to the contact as measured, with drive and load of the measurement, and the source to take."""
+    """Vibration as measured, with drive and load of the measurement, the source to take, and the direction."""
 
     vibration_amplitude: float | None = None
     voltage_peak_to_peak: float | None = None
     frequency: float | None = None
     normal_load: float | None = None
     amplitude_source: AmplitudeSource | None = None
+    direction: DirectionWord | None = Field(
+        default=None, description='Direction of the vibration, which its amplitude is of; "normal" where absent'
+    )
+    vibration_direction: float | None = None
+    torsion_radius: float | None = None
+    second_direction: SecondWord | None = Field(
+        default=None, description="Direction of a second component of the vibration, of the same frequency"
+    )
+    second_amplitude: float | None = None
+    second_fraction: float | None = Field(default=None, description="in place of second_amplitude")
+    second_phase: float | None = None
 
     def require_possible(self) -> None:
-        """Refuse a negative amplitude, and conditions of a measurement that is not there or has none."""
+        """Refuse a negative amplitude, conditions of a measurement that is not there or has none, and directions."""
         conditions = (self.voltage_peak_to_peak, self.frequency, self.normal_load)
         if self.vibration_amplitude is None and any(value is not None for value in conditions):
             raise InvalidInput("drive and load of a measurement need vibration_amplitude")
-        check_stated(require_non_negative, self, "vibration_amplitude")
+        check_stated(require_non_negative, self, "vibration_amplitude", "second_amplitude", "second_fraction")
         self.measured_under()
+        self._require_one_second_component()
+        self.path()
+
+    def path(self) -> VibrationDirection:
+        """Direction with the second component."""
+        if self.direction is not None and self.vibration_direction is not None:
+            raise InvalidInput("give either direction or vibration_direction, an angle within the plane, got both")
+        return VibrationDirection(
+            direction=self.direction or ("normal" if self.vibration_direction is None else "oblique"),
+            vibration_direction=self.vibration_direction,
+            torsion_radius=self.torsion_radius,
+            second_direction=self.second_direction,
+            second_fraction=self._second_fraction(),
+            second_phase=self.second_phase or 0.0,
+        )
+
+    def _second_fraction(self) -> float:
+        """Amplitude of the second component over that of the main one."""
+        if self.second_amplitude is None:
+            return self.second_fraction or 0.0
+        return self.second_amplitude / (self.vibration_amplitude or 1.0)
+
+    def _require_one_second_component(self) -> None:
+        """Refuse a second component without direction or size, and one of two sizes."""
+        sizes = ("second_amplitude", "second_fraction")
+        given = [name for name in (*sizes, "second_phase") if getattr(self, name) is not None]
+        if given and self.second_direction is None:
+            raise InvalidInput(f"{given[0]} is of a second component: give second_direction too")
+        if self.second_direction is not None and not {*sizes} & {*given}:
+            raise InvalidInput("second_direction needs second_amplitude or second_fraction, the size of that motion")
+        if {*sizes} <= {*given}:
+            raise InvalidInput("give either second_amplitude or second_fraction, got both")
+        if self.second_amplitude is not None and not self.vibration_amplitude:
+            raise InvalidInput("second_amplitude needs vibration_amplitude; give second_fraction without one")
 
     def measured_under(self) -> MeasuredUnder | None:
         """Drive and load of the measurement; None where there is none."""
@@ -227,6 +273,38 @@ class RigFile(Section):
         if self.waveguide is not None and self.drive is None:
             raise ValueError("the table waveguide needs drive.frequency")
         return self
+
+    @model_validator(mode="after")
+    def _law_of_direction(self) -> Self:
+        path = self.direction()
+        model = self.friction.friction_model()
+        if not path.is_normal and getattr(model, "in_plane_fraction", None):
+            raise ValueError(
+                "friction.in_plane_fraction and a direction in the table vibration say the same twice: keep"
+                " vibration.second_direction, second_fraction and second_phase"
+            )
+        if path.is_in_plane and "model" not in self.friction.model_fields_set:
+            raise ValueError(
+                f"friction.model: missing; of a vibration {path.text} take coulomb, or one of the models with springs,"
+                " asperity_stick_slip"
+            )
+        missing = path.parts - model.directions - {"normal"}
+        if missing:
+            able = [name for name, each in FRICTION_MODELS.items() if path.parts - {"normal"} <= each.directions]
+            raise ValueError(
+                f"friction.model: {model.name} has no law for a vibration {' and '.join(sorted(missing))} the"
+                f" sliding; take {' or '.join(able)}"
+            )
+        if path.is_in_plane and self.waveguide is not None:
+            raise ValueError(
+                "the table waveguide computes a vibration along the normal: leave vibration.direction out, or replace"
+                " the table by vibration.vibration_amplitude"
+            )
+        return self
+
+    def direction(self) -> VibrationDirection:
+        """Direction of the vibration, along the normal where the file does not say."""
+        return NORMAL if self.vibration is None else self.vibration.path()
 
     @model_validator(mode="after")
     def _structure_with_its_stack(self) -> Self:

@@ -192,7 +192,10 @@ _ENDS = re.compile(r"(.+?)\s+to\s+(.+)")
 _NUMBER = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)"
 _SHARE = re.compile(_NUMBER + r"\s*%")
 _FACTOR = re.compile(r"factor\s+" + _NUMBER)
-_EITHER_SIGN = ("voltage_offset", "lowest_voltage", "highest_voltage", "in_plane_phase", "position")
+_EITHER_SIGN = (
+    *("voltage_offset", "lowest_voltage", "highest_voltage", "position"),
+    *("in_plane_phase", "second_phase", "vibration_direction"),
+)
 _POSSIBLE = {"poisson_ratio": (0.0, 0.5), "coupling_factor": (0.0, 1.0)} | dict.fromkeys(
     _EITHER_SIGN, (-math.inf, math.inf)
 )

@@ -7,7 +7,7 @@ or a scan.
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from math import exp, hypot, log, pi
+from math import degrees, exp, hypot, log, pi
 from pathlib import Path
 from typing import Final
 
@@ -20,6 +20,7 @@ from sonolube.models.contact import SphereOnFlat, hertz_contact_radius
 from sonolube.rig.file.contact_section import height_of_finish
 from sonolube.rig.friction_and_wear import CENTRAL_SHARE, PUBLISHED_DECAY_LENGTH
 from sonolube.rig.record import STATED
+from sonolube.rig.vibration_direction import VibrationDirection
 from sonolube.text.units import format_si
 
 _STATED_AMPLITUDE: Final = 0.15
@@ -184,6 +185,19 @@ class DrivenActuator:
 
 Vibration = StatedAmplitude | DrivenActuator
 """Source of the vibration of the contact."""
+
+
+def direction_entries(direction: VibrationDirection) -> Entries:
+    """Entries of a new rig file for the direction of its vibration, with the friction model of one within the plane."""
+    if direction.is_normal:
+        return Entries(tables={})
+    if direction.vibration_direction is not None:
+        table = {"vibration_direction": json.dumps(f"{degrees(direction.vibration_direction):.6g} deg")}
+    else:
+        table = {"direction": json.dumps(direction.direction)}
+    if direction.torsion_radius is not None:
+        table["torsion_radius"] = toml_text(direction.torsion_radius, "m")
+    return Entries(tables={"vibration": table, "friction": {"model": json.dumps("coulomb")}})
 
 
 _STATED_FACTOR: Final = 1.3

@@ -26,12 +26,14 @@ from sonolube.rig.new_rig.pin_and_vibration import (
     PinShape,
     Vibration,
     compliance_entries,
+    direction_entries,
     lognormal_text,
     surfaces_in_contact,
     toml_text,
 )
 from sonolube.rig.record import Rig
 from sonolube.rig.simulation import friction_point
+from sonolube.rig.vibration_direction import NORMAL, VibrationDirection
 from sonolube.vocabulary import quantity
 
 _CATALOGUE_STRENGTH: Final = 0.15
@@ -185,6 +187,8 @@ class KnownRig:
         Measured normal stiffness of the contact under its load, in place of the decay length. [N/m]
     speed_reason : str
         How the sliding speed follows from a rotational speed; empty for a speed that is stated.
+    direction : VibrationDirection
+        Along the normal, or within the plane by Coulomb's law.
     """
 
     pin: str
@@ -200,6 +204,7 @@ class KnownRig:
     decay_length: float | None = None
     normal_stiffness: float | None = None
     speed_reason: str = ""
+    direction: VibrationDirection = NORMAL
 
     def __post_init__(self) -> None:
         require_positive(normal_load=self.normal_load, sliding_speed=self.sliding_speed, frequency=self.frequency)
@@ -234,7 +239,12 @@ def new_rig_text(known: KnownRig) -> str:
 
     Entries that nobody measured are in its table `uncertainty`, each with its reason in `assumptions`.
     """
-    parts = [*_contact(known), _friction(known), known.vibration.entries(known.frequency)]
+    parts = [
+        *_contact(known),
+        _friction(known),
+        known.vibration.entries(known.frequency),
+        direction_entries(known.direction),
+    ]
     pin, disc = materials.material(known.pin), materials.material(known.disc)
     tables: dict[str, Mapping[str, str]] = {
         "": {"title": json.dumps(f"{pin.title} pin on {disc.title} disc"), "source": '"what was known before a test"'}

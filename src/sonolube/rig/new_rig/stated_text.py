@@ -22,6 +22,7 @@ from sonolube.rig.new_rig.pin_and_vibration import (
     finished_surface,
     scanned_surface,
 )
+from sonolube.rig.vibration_direction import VibrationDirection
 from sonolube.text.units import format_si, to_si
 
 SHAPE_FORMS: Final = (
@@ -124,6 +125,22 @@ def vibration_of(text: str, *, name: str = "--amplitude") -> Vibration:
         volts = reader("V", name="--voltage" if name.startswith("--") else "voltage")(voltage)
         return DrivenActuator(actuator=catalogue_actuator(actuator), voltage_peak_to_peak=volts)
     return StatedAmplitude(vibration_amplitude=reader("m", name=name)(text))
+
+
+def direction_of(
+    text: str | None, *, torsion_radius: str | None = None, name: str = "--direction", radius_name: str = "radius"
+) -> VibrationDirection:
+    """Direction of a vibration by its word, such as "along", or by its angle to the sliding, such as "30deg"."""
+    radius = None if torsion_radius is None else reader("m", name=radius_name)(torsion_radius)
+    word = (text or "normal").strip()
+    if word[:1].isalpha():
+        if word == "torsional" and radius is None:
+            raise InvalidInput(
+                f"{name} torsional needs {radius_name}, the radius of the ring at which the amplitude holds"
+            )
+        return VibrationDirection(direction=word, torsion_radius=radius)
+    angle = to_si(word, unit="rad", name=name)
+    return VibrationDirection(direction="oblique", vibration_direction=angle, torsion_radius=radius)
 
 
 def surface_of(text: str) -> KnownSurface:

@@ -31,6 +31,7 @@ from sonolube.report.results.design.sweep import count_table
 from sonolube.report.results.record_object import operating_point, rig_settings
 from sonolube.rig import Rig, read_rig, structure_entries
 from sonolube.rig.driven_rig import driven_rig
+from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.storage.user_files import input_text
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, Table, answer
 from sonolube.tasks.design.control import friction_force
@@ -91,6 +92,8 @@ def design_space(
     bolt: PreloadBolt | None,
 ) -> DesignSpace:
     """Design space of actuators, frequencies, waveforms and entries of the structure."""
+    if rig.direction.is_in_plane:
+        _ = resolved_rig(rig).moved  # which refuses it
     driven = driven_rig(rig)
     drive = driven.drive
     known: dict[str, CatalogueActuator] = {name: catalogue_actuator(name) for name in catalogue_names()}

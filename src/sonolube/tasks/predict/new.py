@@ -10,7 +10,7 @@ from sonolube.operating_system import quoted
 from sonolube.rig import Rig
 from sonolube.rig.new_rig.pin_and_vibration import KnownSurface
 from sonolube.rig.new_rig.rig_text import KnownRig, LeastKnown, least_known, new_rig_text, rig_of_known
-from sonolube.rig.new_rig.stated_text import pin_shape, reader, speed_of, surface_of, vibration_of
+from sonolube.rig.new_rig.stated_text import direction_of, pin_shape, reader, speed_of, surface_of, vibration_of
 from sonolube.tasks.answer import Answer, Block, Dataset, Table, Verbatim, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import File, Number, Parameter, Quantity
@@ -38,8 +38,17 @@ def new(
     load: Annotated[Number, Quantity("Normal load.", "N")],
     speed: Annotated[Number, Quantity("Sliding speed: 0.2m/s, or '100 rpm' with the track.", "m/s")],
     frequency: Annotated[Number, Quantity("Frequency of the vibration.", "Hz")],
-    amplitude: Annotated[
-        Number | None, Quantity("Vibration amplitude normal to the contact, zero to peak.", "m")
+    amplitude: Annotated[Number | None, Quantity("Vibration amplitude in its direction, zero to peak.", "m")] = None,
+    direction: Annotated[
+        str | None,
+        Parameter(
+            "Direction of the vibration: normal (default), along or across the sliding, torsional, or its angle to the"
+            " sliding within the plane, such as 30deg.",
+            "DIRECTION",
+        ),
+    ] = None,
+    torsion_radius: Annotated[
+        Number | None, Quantity("Radius of a torsional ring, at which the amplitude holds.", "m")
     ] = None,
     actuator: Annotated[
         str | None, Parameter("Actuator by its name in sonolube actuators, in place of the amplitude.", "NAME")
@@ -129,6 +138,12 @@ def new(
         friction_coefficient=_read_optional("friction", friction, ""),
         decay_length=_read_optional("decay_length", decay_length, "m"),
         normal_stiffness=_read_optional("stiffness", stiffness, "N/m"),
+        direction=direction_of(
+            direction,
+            torsion_radius=_text(torsion_radius, "m"),
+            name=shown("direction"),
+            radius_name=shown("torsion_radius"),
+        ),
     )
     rig = rig_of_known(known)
     return NewRig(rig=rig, rig_text=new_rig_text(known), least_known=least_known(rig))
@@ -147,8 +162,9 @@ class NewRig(Answer):
         """Title, the inputs known least with how to measure them, and the next command."""
         heads = ("least known", "distribution", "to measure it")
         rows = [(one.key, one.text, one.remedy) for one in self.least_known]
-        following = [] if self.target is None else [Verbatim(f"  next: sonolube predict {quoted(str(self.target))}")]
-        return [self.rig.title, Table(heads, rows), *following]
+        following = "predict" if self.rig.direction.is_normal else "friction"  # the theory, where no test tells more
+        command = [] if self.target is None else [Verbatim(f"  next: sonolube {following} {quoted(str(self.target))}")]
+        return [self.rig.title, Table(heads, rows), *command]
 
     def object(self) -> dict[str, Any]:
         """Title, text of the file and the inputs known least."""

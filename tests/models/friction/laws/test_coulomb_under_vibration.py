@@ -6,7 +6,12 @@ from pytest import approx, mark, raises
 from scipy.integrate import quad
 
 from sonolube.errors import InvalidInput
-from sonolube.models.friction import oblique_vibration_ratio, parallel_vibration_ratio, transverse_vibration_ratio
+from sonolube.models.friction import (
+    oblique_vibration_ratio,
+    parallel_vibration_ratio,
+    torsional_vibration_ratio,
+    transverse_vibration_ratio,
+)
 
 speeds = st.floats(1e-3, 10)
 angles = st.floats(0, np.pi)
@@ -48,6 +53,17 @@ def test_the_oblique_ratio_approaches_the_arcsine_along_the_sliding(sliding: flo
     assert float(nearly) == approx(
         float(along), abs=1e-4
     )  # at equal speeds the difference is proportional to the root of the angle
+
+
+@given(sliding=speeds, vibration=speeds)
+def test_a_turning_ring_has_the_mean_of_its_places(sliding: float, vibration: float) -> None:
+    places = (np.arange(4000) + 0.5) * np.pi / 8000
+    each = oblique_vibration_ratio(sliding_speed=sliding, vibration_velocity=vibration, vibration_direction=places)
+    ring = float(torsional_vibration_ratio(sliding_speed=sliding, vibration_velocity=vibration))
+    along = float(parallel_vibration_ratio(sliding_speed=sliding, vibration_velocity=vibration))
+    across = float(transverse_vibration_ratio(sliding_speed=sliding, vibration_velocity=vibration))
+    assert ring == approx(float(each.mean()), abs=1e-5)
+    assert min(along, across) - 1e-12 <= ring <= max(along, across) + 1e-12
 
 
 @given(sliding=speeds, vibration=speeds, angle=angles)

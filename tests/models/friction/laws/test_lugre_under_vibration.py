@@ -110,6 +110,22 @@ def test_without_vibration_nothing_changes() -> None:
     assert lugre_under_vibration(LAW, sine(0.0), sliding_speed=[0.01, 0.3]) == approx([1.0, 1.0])
 
 
+def test_a_motion_along_of_its_own_is_rigid_friction_for_stiff_bristles() -> None:
+    even = replace(LAW, static_friction_force=LAW.coulomb_friction_force, viscous_coefficient=0.0)
+    stiff = replace(even, bristle_stiffness=1e12)
+    still = sine(0.0)
+    phases = 2 * np.pi * np.arange(still.displacement.size) / still.displacement.size
+    along = replace(still, along=1e-6 * np.cos(phases))
+    peak = 2 * np.pi * along.frequency * 1e-6
+    speeds = np.array([0.2, 0.7, 1.5]) * peak
+    expected = parallel_vibration_ratio(sliding_speed=speeds, vibration_velocity=peak)
+    assert lugre_under_vibration(stiff, along, sliding_speed=speeds) == approx(
+        expected, abs=5e-3
+    )  # of a jump within a step
+    with raises(InvalidInput, match="no law for a motion across the sliding"):
+        lugre_under_vibration(stiff, replace(still, across=along.along), sliding_speed=speeds)
+
+
 def test_fast_in_plane_vibration_reduces_friction_further_on_a_falling_stribeck_curve() -> None:
     flat = replace(LAW, static_friction_force=1.2)
     for fraction in (0.2, 0.5):

@@ -187,6 +187,55 @@ def oblique_vibration_ratio(
     return ratio.reshape(v_r.shape)
 
 
+def torsional_vibration_ratio(*, sliding_speed: ArrayLike, vibration_velocity: ArrayLike) -> Floats:
+    r"""Mean friction ratio of a ring that turns to and fro about the normal of its face, by Coulomb's law. []
+
+    Parameters
+    ----------
+    sliding_speed : array_like
+        Mean sliding speed of the whole ring in one direction. [m/s]
+    vibration_velocity : array_like, broadcast against `sliding_speed`
+        Peak velocity along the circumference: amplitude of the angle times angular frequency and radius. [m/s]
+
+    Returns
+    -------
+    ndarray, shape of the broadcast arguments
+
+    Raises
+    ------
+    InvalidInput
+        If the sliding speed is not positive, the vibration negative, or a value not finite.
+
+    Notes
+    -----
+    .. math:: \frac{F_1}{F_0} = \frac2\pi \int_0^{\pi/2} R(\psi)\, \mathrm{d}\psi
+
+    with the ratio R of a vibration at the angle psi to the sliding (`oblique_vibration_ratio`), which every place of
+    the ring has, under an even pressure; Gauss-Legendre with nodes towards the vibration along, to 1e-6. A contact
+    that also slides about the axis of the vibration, as in a bearing or a thread, vibrates along its sliding
+    everywhere: `parallel_vibration_ratio`.
+
+    Examples
+    --------
+    >>> from sonolube.models.friction import torsional_vibration_ratio
+    >>> round(float(torsional_vibration_ratio(sliding_speed=0.1, vibration_velocity=0.2)), 3)
+    0.525
+    """
+    v_r, v_1 = np.broadcast_arrays(*_speeds(sliding_speed, vibration_velocity))
+    angles, weights = ring_directions(64)
+    ratios = oblique_vibration_ratio(
+        sliding_speed=v_r[..., np.newaxis], vibration_velocity=v_1[..., np.newaxis], vibration_direction=angles
+    )
+    return np.asarray(ratios @ weights)
+
+
+def ring_directions(count: int) -> tuple[Floats, Floats]:
+    """Angles of the motion of a turning ring to its sliding over a quarter turn, and their weights, which sum to 1."""
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    part = (1 + nodes) / 2
+    return np.pi / 2 * part**2, weights * part
+
+
 def _speeds(sliding_speed: ArrayLike, vibration_velocity: ArrayLike) -> tuple[Floats, Floats]:
     """Checked sliding speed and peak vibration velocity. [m/s]"""
     return (require_positive(sliding_speed=sliding_speed), require_non_negative(vibration_velocity=vibration_velocity))

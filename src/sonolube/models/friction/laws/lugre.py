@@ -102,7 +102,7 @@ def lugre_under_vibration(
     law : LuGreFriction
         Law of the contact under its dead load.
     motion : ContactMotion
-        One period of the gap, with its normal force.
+        One period of the gap, with its normal force, and its own motion along the sliding where it has one.
     sliding_speed : array_like, any shape
         Mean sliding speed. [m/s]
     in_plane_fraction : float
@@ -117,7 +117,7 @@ def lugre_under_vibration(
     Raises
     ------
     InvalidInput
-        If a speed is not positive, the fraction negative, or a value not finite.
+        If a speed is not positive, the fraction negative, a value not finite, or a motion goes across the sliding.
 
     Notes
     -----
@@ -187,9 +187,15 @@ def lugre_ratios(
     )
     steady = law.limit(v_r[:, np.newaxis]) + law.viscous_coefficient * v_r[:, np.newaxis]
 
+    if any(motion.across is not None for motion in motions):
+        raise InvalidInput("LuGre friction has no law for a motion across the sliding; leave it out")
+
     def mean_ratio(rows: Integers, displacement: Floats, normal_force: Floats) -> Floats:
         n, own, speeds, frequency = displacement.shape[-1], law.rows(rows), v_r[rows, np.newaxis], frequencies[rows]
         along = fraction * delayed_oscillation(displacement, phase=lag) if fraction else np.zeros(displacement.shape)
+        for place, row in enumerate(rows.tolist()):
+            if (own_along := motions[row].resampled(n).along) is not None:
+                along[place] = own_along
         slides = np.roll(along, -1, axis=-1) - along + speeds / (frequency * n)
         load = (normal_force + np.roll(normal_force, -1, axis=-1)) / (2 * loads[rows])  # amid successive samples
         # where contact is lost the limit is the least number

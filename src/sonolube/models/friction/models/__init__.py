@@ -10,6 +10,7 @@ FRICTION_MODELS: VariantTable[type[FrictionModel]] = VariantTable(
     {
         "asperity_stick_slip": "sonolube.models.friction.models.asperity_stick_slip:AsperityStickSlip",
         "bristle_with_holder": "sonolube.models.friction.models.bristle_with_holder:BristleWithHolder",
+        "coulomb": "sonolube.models.friction.models.coulomb:Coulomb",
         "kinematic": "sonolube.models.friction.models.kinematic:Kinematic",
         "dong_2015_full_period": "sonolube.models.friction.models.dong_2015:Dong2015FullPeriod",
         "dong_2015_half_period": "sonolube.models.friction.models.dong_2015:Dong2015HalfPeriod",

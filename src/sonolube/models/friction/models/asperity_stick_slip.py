@@ -17,6 +17,7 @@ from sonolube.models.contact.rough import RoughContact, decay_length, separation
 from sonolube.models.friction.models.asperity_stick_slip_batch import batched_stick_slip_ratio
 from sonolube.models.friction.models.asperity_stick_slip_sine import EMPIRICAL_MEMORY_LENGTH
 from sonolube.models.friction.models.model import FrictionModel, parameter
+from sonolube.models.friction.models.planar_stick_slip import planar_stick_slip_ratio
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)
 _EVEN, _EVEN_WEIGHTS = (1 + _NODES) / 2, _WEIGHTS / 2  # of a quadrature from 0 to 1
@@ -81,6 +82,8 @@ class AsperityStickSlip(FrictionModel):
         "load-balanced exponential stick-slip; D_c = 1.5 um fitted to D Table 2.3 and sections 2.4 and 2.5"
     )
 
+    directions: ClassVar[frozenset[str]] = frozenset({"normal", "along", "across"})
+
     memory_length: float = parameter(EMPIRICAL_MEMORY_LENGTH, positive=True)
     in_plane_fraction: float = parameter(0.0, lowest=0.0)
     in_plane_phase: float = parameter(0.0)
@@ -98,9 +101,12 @@ class AsperityStickSlip(FrictionModel):
                 along = np.roll(sampled.along, -int(np.argmax(sampled.displacement)))
                 slides = (np.roll(along, -1) - along) / self.memory_length
             steady = v_r / (self.memory_length * motion.frequency * gap.size)
+            if sampled.across is not None:
+                across = np.roll(sampled.across, -int(np.argmax(sampled.displacement))) / self.memory_length
+                return planar_stick_slip_ratio(gap / length, np.cumsum(slides) - slides, across, steady)
             return _sampled_ratio(gap / length, slides, steady)
 
-        is_normal = motion.along is None and not self.in_plane_fraction
+        is_normal = motion.along is None and motion.across is None and not self.in_plane_fraction
         if is_normal and motion.displacement.size <= _LONGEST_PERIOD:
             every = np.zeros(v_r.size, dtype=np.int64)
             closed = self.batched_ratio(
@@ -180,9 +186,10 @@ def _sampled_ratio(x: Floats, slides: Floats, steady: Floats) -> Floats:
         total = exp(lowest - start) * (start - (permanent[0] - force) + 1)
         total += shares @ _element_forces(x, slides, slide, lowest + graded)[0]
         if start > highest:
-            heights = stroke + (start - highest) * _EVEN
+            reach = min(start - highest, _NEGLIGIBLE)
+            heights = stroke + reach * _EVEN
             forces = np.exp(-heights) * _element_forces(x, slides, slide, lowest + heights)[0]
-            total += (start - highest) * (_EVEN_WEIGHTS @ forces)
+            total += reach * (_EVEN_WEIGHTS @ forces)
         ratio[i] = total / mean_limit
     return ratio
 

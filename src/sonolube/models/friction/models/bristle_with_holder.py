@@ -80,6 +80,8 @@ class BristleWithHolder(FrictionModel):
     name: ClassVar[str] = "bristle_with_holder"
     citation: ClassVar[str] = "M. Popov, V. L. Popov and N. V. Popov, Friction 5, 45 (2017)"
 
+    directions: ClassVar[frozenset[str]] = frozenset({"normal", "along"})
+
     holder_stiffness: float = parameter(math.inf, positive=True)
     holder_mass: float = parameter(0.0, lowest=0.0)
     holder_damping: float = parameter(0.0, lowest=0.0)

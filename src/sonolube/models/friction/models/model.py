@@ -114,6 +114,8 @@ class FrictionModel(ABC):
         Whether frequency and sliding speed enter; where not, a prescribed sine of any frequency gives the same.
     needs_open_gap : bool
         Whether the model loses its meaning where the mean planes meet within the period.
+    directions : frozenset of str
+        Directions of vibration in which friction changes by the model: "normal", "along" and "across".
     range_note : str
         Why a ratio beyond `ratio_bounds` has no meaning in the model, and advice.
     """
@@ -125,6 +127,7 @@ class FrictionModel(ABC):
     mean_gap: ClassVar[MeanGap] = MeanGap.LOAD_BALANCED
     rate_dependent: ClassVar[bool] = True
     needs_open_gap: ClassVar[bool] = True
+    directions: ClassVar[frozenset[str]] = frozenset({"normal"})
     range_note: ClassVar[str] = (
         "no contact transmits more than the friction coefficient times its normal force; the parameters of the model"
         " do not hold for this motion"

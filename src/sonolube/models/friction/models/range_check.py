@@ -199,10 +199,14 @@ def model_friction(
 
 def _require_direction(model: FrictionModel, motion: ContactMotion) -> None:
     """Refuse a motion within the plane that a model would leave out."""
-    if motion.across is not None or (motion.along is not None and not hasattr(model, "in_plane_fraction")):
-        direction = "along" if motion.across is None else "across"
+    moved = [name for name in ("along", "across") if getattr(motion, name) is not None]
+    missing = [name for name in moved if name not in model.directions]
+    if missing:
+        from sonolube.models.friction.models import FRICTION_MODELS
+
+        able = " or ".join(name for name, each in FRICTION_MODELS.items() if {*moved} <= each.directions)
         raise InvalidInput(
-            f"friction model {model.name} has no law for a motion {direction} the sliding; leave {direction} out"
+            f"friction model {model.name} has no law for a motion {missing[-1]} the sliding; take friction.model {able}"
         )
 
 

@@ -148,7 +148,7 @@ def _mean_ratios(
         friction, normal = 0.0, 0.0
         for j in range(nodes.size):
             q = edge * (1 + nodes[j]) / 2
-            force, mean_limit, steady = _steady_period(limit, q * q if nodes.size > 1 else 0.0, x, y)
+            force, mean_limit, steady = steady_spring_period(limit, q * q if nodes.size > 1 else 0.0, x, y)
             friction += weights[j] * force
             normal += weights[j] * mean_limit
             settled = settled and steady
@@ -157,7 +157,7 @@ def _mean_ratios(
 
 
 @kernel(**INNER)
-def _steady_period(limit: Floats, offset: float, x: Floats, y: Floats) -> tuple[float, float, bool]:
+def steady_spring_period(limit: Floats, offset: float, x: Floats, y: Floats) -> tuple[float, float, bool]:
     """Mean force along x and the mean limit of one spring over its steady period, as deformations."""
     n = limit.size - 1
     p, q = max(limit[0] - offset, 0.0), 0.0
