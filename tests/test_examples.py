@@ -43,3 +43,17 @@ def test_the_wear_table_holds_the_published_rates_at_three_newton(tmp_path: Path
     # D Table 3.4: 2.566e-2 and 1.355e-2 mm3/m
     assert float(row[1]) == pytest.approx(25.66, abs=0.015)
     assert float(row[2]) == pytest.approx(13.55, abs=0.015)
+
+
+def test_the_wire_has_the_stress_of_the_printed_example(tmp_path: Path) -> None:
+    lines = run(next(path for path in EXAMPLES if path.stem == "wire_drawing"), tmp_path)
+    assert lines[0].split()[-2:] == ["240.4", "MPa"]  # G. E. Dieter, Mechanical Metallurgy, example 19.1
+    critical, stress = lines[2].split()[3], lines[2].split()[-2]
+    assert (critical, float(stress)) == ("1.26", pytest.approx(0.57 * 240.4, rel=2e-3))
+    assert Path(lines[-2]).suffix == ".png"
+
+
+def test_the_tool_cuts_always_above_its_critical_speed_only(tmp_path: Path) -> None:
+    lines = run(next(path for path in EXAMPLES if path.stem == "vibrated_turning"), tmp_path)
+    assert "cuts for 24 %, 68 %, 100 %" in lines[0]  # 0.63 m/s
+    assert "cuts for 16 %, 41 %, 68 %" in lines[1]  # 1.26 m/s
