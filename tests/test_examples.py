@@ -49,7 +49,7 @@ def test_the_wear_table_holds_the_published_rates_at_three_newton(tmp_path: Path
     assert float(row[2]) == pytest.approx(13.55, abs=0.015)
 
 
-def test_the_wire_has_the_stress_of_the_printed_example(tmp_path: Path) -> None:
+def test_the_wire_has_the_stress_of_the_worked_example(tmp_path: Path) -> None:
     lines = run(next(path for path in EXAMPLES if path.stem == "wire_drawing"), tmp_path)
     assert lines[0].split()[-2:] == ["240.4", "MPa"]  # G. E. Dieter, Mechanical Metallurgy, example 19.1
     assert lines[2].split()[3] == "1.26"

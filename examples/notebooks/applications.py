@@ -35,7 +35,7 @@ still = friction.drawing_stress(yield_strength=flow_stress, **die)
 frictionless = friction.drawing_stress(
     yield_strength=flow_stress, **die | {"friction_coefficient": 0.0}
 )
-print(f"drawing stress     {1e-6 * still:.1f} MPa; Dieter has 240.4 MPa")
+print(f"drawing stress     {1e-6 * still:.1f} MPa; worked solution 240.4 MPa")
 print(f"part by friction   {1 - frictionless / still:.0%}")
 
 # %% [markdown]

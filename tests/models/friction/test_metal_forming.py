@@ -79,9 +79,9 @@ DIE = {"area_reduction": 0.2, "friction_coefficient": 0.09, "die_half_angle": np
 B = 0.09 / np.tan(np.radians(6))
 
 
-def test_the_drawing_stress_is_that_of_a_printed_example() -> None:
-    # G. E. Dieter, Mechanical Metallurgy, example 19.1: K = 1300 MPa, n = 0.3, die of 12 degrees, 20 %, mu = 0.09
-    flow_stress = 1300e6 * np.log(1 / 0.8) ** 0.3 / 1.3
+def test_the_drawing_stress_is_that_of_a_worked_example() -> None:
+    # G. E. Dieter, Mechanical Metallurgy, example 19.1, by the FOSSEE textbook companion
+    flow_stress = 1300e6 * np.log(1 / 0.8) ** 0.3 / 1.3  # K = 1300 MPa, n = 0.3
     assert drawing_stress(yield_strength=flow_stress, **DIE) == approx(240.422e6, rel=2e-6)
 
 

@@ -217,10 +217,11 @@ def drawing_stress(
     ----------
     .. [1] G. Sachs, Z. angew. Math. Mech. 7, 235 (1927).
     .. [2] G. E. Dieter, Mechanical Metallurgy, chapter 19, Drawing of Rods, Wires and Tubes.
+    .. [3] FOSSEE textbook companion to [2]_, chapter 19, example 19.1.
 
     Examples
     --------
-    Example 19.1 of [2]_, with K = 1300 MPa, n = 0.3 and so 638 MPa on average, is a stress of 240.4 MPa.
+    Example 19.1 of [2]_, with K = 1300 MPa, n = 0.3 and so 638 MPa on average: 240.4 MPa by its worked solution [3]_.
 
     >>> from math import log, radians
     >>> from sonolube.models.friction import drawing_stress
