@@ -1,4 +1,4 @@
-"""Example files that come with sonolube: rigs, tables of runs, maps of devices, facts, mappings and protocols."""
+"""Example files that come with sonolube: rigs, tables of runs, scripts, maps of devices, facts, mappings, protocols."""
 
 import re
 import tomllib
@@ -13,7 +13,7 @@ from sonolube.errors import UnknownName
 from sonolube.facts.protocol import protocol_names, protocol_path
 
 _ROOM: Final = Path(__file__).parent
-_ENDINGS: Final = (".toml", ".csv")
+_ENDINGS: Final = (".toml", ".csv", ".py")
 _RIGS: Final = "examples/rigs/"
 _LEFT_OUT: Final = ("notebooks",)  # settings of a linter
 _SCHEMA: Final = "#:schema"  # begins a line whose relative path holds only where the original lies
@@ -46,6 +46,11 @@ class ExampleFile:
         return self.path.startswith(_RIGS)
 
     @property
+    def is_script(self) -> bool:
+        """Whether it is a script of Python."""
+        return self.source.suffix == ".py"
+
+    @property
     def text(self) -> str:
         """Content."""
         lines = self.source.read_text(encoding="utf-8").splitlines(keepends=True)
@@ -53,8 +58,10 @@ class ExampleFile:
 
     @property
     def title(self) -> str:
-        """Title in the file, else its first comment or the columns of the table."""
+        """Title in the file, else its first comment, the columns of the table or the first line of the script."""
         text = self.text
+        if self.is_script:
+            return text.partition("\n")[0].strip('"').rstrip(".")
         if self.source.suffix == ".csv":
             columns = _UNIT.sub("", text.splitlines()[0]).replace("_", " ").split(",")
             return f"Table of {', '.join(columns)}"
@@ -62,20 +69,20 @@ class ExampleFile:
         return title if isinstance(title, str) else text.partition("\n")[0].lstrip("# ").partition(". ")[0]
 
     def companions(self) -> list["ExampleFile"]:
-        """Further example files that it names by their paths beside it, such as the modes of a rig."""
+        """Further example files that it names by their paths beside it, such as the modes of a rig, with theirs."""
         text, folder = self.text, PurePosixPath(self.path).parent
-        return [
-            other
-            for other in _every()
-            if PurePosixPath(other.path).is_relative_to(folder)
-            and f'"{PurePosixPath(other.path).relative_to(folder).as_posix()}"' in text
+        between = '" / "' if self.is_script else "/"
+        below = (other for other in _every() if PurePosixPath(other.path).is_relative_to(folder))
+        named = [
+            other for other in below if f'"{between.join(PurePosixPath(other.path).relative_to(folder).parts)}"' in text
         ]
+        return [each for other in named for each in (other, *other.companions())]
 
 
 @cache
 def example_files() -> Mapping[str, ExampleFile]:
     """Example files by name, rigs first, without those that only belong to another."""
-    belonging = {other.path for each in _every() for other in each.companions()}
+    belonging = {other.path for each in _every() if not each.is_script for other in each.companions()}
     own = (each for each in _every() if each.path not in belonging)
     return MappingProxyType({each.name: each for each in sorted(own, key=lambda each: (not each.is_rig, each.path))})
 
@@ -92,10 +99,17 @@ def example_file(name: str) -> ExampleFile:
 
 @cache
 def _every() -> tuple[ExampleFile, ...]:
-    """Every example file: those beside the package in its sources or inside it where it is installed, and protocols."""
+    """Every example file: those beside the package in its sources or inside it where it is installed, and protocols.
+
+    Of the scripts those of the folder itself, without gallery and notebooks.
+    """
     inside = _ROOM / "examples"
     folder = inside if inside.is_dir() else _ROOM.parents[1] / "examples"
     sources = {path.relative_to(folder): path for path in sorted(folder.rglob("*")) if path.suffix in _ENDINGS}
-    own = {f"examples/{path.as_posix()}": each for path, each in sources.items() if path.parts[0] not in _LEFT_OUT}
+    own = {
+        f"examples/{path.as_posix()}": each
+        for path, each in sources.items()
+        if path.parts[0] not in _LEFT_OUT and (path.suffix != ".py" or len(path.parts) == 1)
+    }
     protocols = {f"examples/protocols/{name}.toml": protocol_path(name) for name in protocol_names()}
     return tuple(ExampleFile(path=path, source=each) for path, each in (own | protocols).items())

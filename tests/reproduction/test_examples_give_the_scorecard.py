@@ -21,10 +21,8 @@ Answer = Callable[..., dict[str, Any]]
 _PERCENT, _MICRO, _MM3_PER_M = 100.0, 1e6, 1e9  # from SI to the printed unit
 _SINE = ("--amplitude", "per-volt")
 _COMPUTED = ("--amplitude", "computed")
-_NO_ROW = {
-    "cutter_head",  # its rows are of soft layers fitted to the measurement, which no rig file holds
-    "vibrating_base",  # of a study that D reviews
-}
+# rows of the cutter head are of soft layers fitted to the measurement, which no rig file holds; the others are not of D
+_NO_ROW = {"cutter_head", "bronze_bush", "contact_resonance", "vibrating_base"}
 
 
 @dataclass(frozen=True, kw_only=True)

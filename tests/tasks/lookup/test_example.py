@@ -85,6 +85,23 @@ def test_a_changed_file_is_kept_and_an_unchanged_one_written_again(folder: Path,
     assert (folder / "new" / "examples" / "rigs" / "modes" / "collar-modes.toml").is_file()
 
 
+def test_a_script_is_written_with_the_rigs_that_it_reads_and_the_command_that_runs_it(
+    folder: Path, sonolube: Program
+) -> None:
+    written = sonolube("example", "collar_on_command").out.splitlines()
+    assert "  try: python examples/collar_on_command.py" in written
+    names = {path.relative_to(folder / "examples").as_posix() for path in folder.rglob("*.*")}
+    assert names == {"collar_on_command.py", "rigs/collar.toml", "rigs/modes/collar-modes.toml"}
+    assert "collar" in example_files()
+    assert not any("gallery" in each.path or "notebooks" in each.path for each in example_files().values())
+
+
+@pytest.mark.parametrize("name", ["wire_drawing", "vibrated_turning", "bronze_bush"])
+def test_the_worked_cases_of_the_page_are_examples(name: str) -> None:
+    assert f"`{name}`" in (ROOT / "docs" / "applications.md").read_text(encoding="utf-8")
+    assert [Path(path).stem for path in example(name).files()] == [name]
+
+
 def test_the_list_writes_nothing(folder: Path, sonolube: Program) -> None:
     assert "tribometer_uncertain" in sonolube("example").out
     assert list(folder.iterdir()) == []

@@ -44,8 +44,11 @@ from .metal_forming import (
     ZINC_STRESS_RATIO as ZINC_STRESS_RATIO,
     acoustic_intensity as acoustic_intensity,
     acoustic_softening_ratio as acoustic_softening_ratio,
+    drawing_stress as drawing_stress,
     reference_intensity_from_test as reference_intensity_from_test,
     superposed_mean_stress as superposed_mean_stress,
+    tool_contact_fraction as tool_contact_fraction,
+    vibrated_drawing_stress as vibrated_drawing_stress,
 )
 from .models import (
     FRICTION_MODELS as FRICTION_MODELS,

@@ -44,7 +44,7 @@ class ExampleAnswer(Answer):
     is_written: bool
 
     def blocks(self) -> Sequence[Block]:
-        """Names and titles; of a single example the commands whose help texts use it."""
+        """Names and titles; of a single example the commands that use it."""
         if len(self.examples) == 1:
             shown = self.examples[0]
             return [f"{shown.name}: {shown.title}", *(Verbatim(f"  try: {command}") for command in _commands(shown))]
@@ -85,7 +85,9 @@ class ExampleAnswer(Answer):
 
 
 def _commands(shown: ExampleFile) -> list[str]:
-    """Commands of help texts that use a file."""
+    """Commands of help texts that use a file, or the command that runs a script."""
+    if shown.is_script:
+        return [f"python {shown.path}"]
     return [command for command in _examples() if shown.path in command.split()]
 
 
