@@ -460,7 +460,7 @@ MODES = {
             "--delay": "2ms",
             "--rate": "2kHz",
             "--closed-loop": "5ms",
-            "--pin": "steel_aisi_1045",
+            "--pin": "steel_1045",
             "--quality": "100",
             "--heat-capacity": "3J/K",
         }

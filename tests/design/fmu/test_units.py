@@ -170,3 +170,17 @@ def test_both_units_close_the_loop_as_python_does(
     # Python's plant is piecewise linear between 41 voltages, the unit's is smooth
     assert np.abs(np.array(forces) - by_python.friction_force).max() < 1e-2 * scale
     assert forces[-1] == pytest.approx(float(study.run.setpoint[-1]), rel=1e-4)
+
+
+def test_python_and_terminal_export_the_same_bytes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import sonolube as sl
+    from sonolube.cli import main
+
+    monkeypatch.setattr("sonolube.tasks.export.mock_up.c_compiler", lambda: None)
+    with pytest.raises(SystemExit):
+        main(["export", "fmu", f"{RIGS}/flextensional.toml", "--fmi", "2", "--out", str(tmp_path)])
+    answer = sl.export.fmu(f"{RIGS}/flextensional.toml", fmi="2")
+    for name, content in answer.files().items():
+        assert (tmp_path / name).read_bytes() == content
+    assert "flextensional-controller.fmu" in answer.files()
+    assert any("no C compiler" in each for each in answer.caveats())

@@ -12,6 +12,7 @@ from sonolube.design.fmu.mock_up_unit import MockUpUnit, c_compiler, controller_
 from sonolube.design.fmu.plant import PinHeat, PlantTables, plant_ranges
 from sonolube.design.fmu.tabulation import plant_tables
 from sonolube.errors import InvalidInput
+from sonolube.execution.compilation import many_points
 from sonolube.report.results.record_object import amplitude_rows, operating_point, picked
 from sonolube.rig import AMPLITUDE, Rig, commanded_quantity, operating_caveats, thermal_solid
 from sonolube.rig.resolved_rig import resolved_rig
@@ -116,8 +117,7 @@ class UnitsAnswer(Answer):
                 " tracks no resonance"
             )
         if self.tables.heat is None:
-            needed = f"{shown('pin')} and {shown('disc')}"
-            missing.append(f"the plant has no temperature: the rig names no materials; {needed} give them")
+            missing.append("the plant has no temperature, which needs the materials of pin and disc")
         if self.plant.missing:
             missing.append(self.plant.missing)
         return (*operating_caveats(self.rig), _ENVELOPE, *missing, _UNTRIED)
@@ -180,7 +180,7 @@ def fmu(
     is_fixed = ranges.frequency[0] == ranges.frequency[1]
     if is_fixed:
         refuse_unused("track", because="for an amplitude that holds at one frequency")
-    with stage("tabulating") as advance:
+    with stage("tabulating") as advance, many_points():
         tables = plant_tables(resolved, ranges, mode=mode, heat=heat, advance=partial(advance, "vibrations"))
     highest = ranges.level[1]
     limits: dict[str, Any] = (
@@ -196,7 +196,7 @@ def fmu(
         tracking=track and not is_fixed,
         duration=_SAMPLES * interval,
     )
-    with stage("controlling"):
+    with stage("controlling"), many_points():
         study = loops.design_control(known, settings, mode=mode)
     with stage("compiling"):
         shared: dict[str, Any] = {"version": fmi, "tool": _tool(), "compiler": c_compiler()}
