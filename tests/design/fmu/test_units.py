@@ -1,8 +1,11 @@
 """Files of exported units: valid, the same each time, and compiled without a warning."""
 
+import os
 import subprocess
 from collections.abc import Callable
+from ctypes import CDLL
 from dataclasses import replace
+from importlib import import_module
 from io import BytesIO
 from math import pi
 from pathlib import Path
@@ -15,7 +18,7 @@ from tests.design.fmu.importer import Instance, fmpy, written
 
 from sonolube.design.control import ControlDesign, FrictionLoop, simulate_closed_loop
 from sonolube.design.fmu import MockUpUnit, PlantTables, c_compiler, controller_unit, plant_unit
-from sonolube.rig import read_rig
+from sonolube.rig import operating_points, read_rig
 
 PlantOf = Callable[[PlantTables, str], MockUpUnit]
 ControllerOf = Callable[[str], MockUpUnit]
@@ -184,3 +187,34 @@ def test_python_and_terminal_export_the_same_bytes(tmp_path: Path, monkeypatch: 
         assert (tmp_path / name).read_bytes() == content
     assert "flextensional-controller.fmu" in answer.files()
     assert any("no C compiler" in each for each in answer.caveats())
+
+
+@VERSIONS
+def test_the_library_has_every_function_of_the_interface(
+    collar: PlantTables, version: str, plant_of: PlantOf, tmp_path: Path
+) -> None:
+    importer = {"2": "fmpy.fmi2:FMU2Slave", "3": "fmpy.fmi3:FMU3Slave"}[version].split(":")
+    functions = [name for name in dir(getattr(import_module(importer[0]), importer[1])) if name.startswith("fmi")]
+    assert len(functions) > 25
+    name, content = next(each for each in entries(plant_of(collar, version)).items() if each[0].startswith("binaries"))
+    path = tmp_path / Path(name).name
+    path.write_bytes(content)
+    library = CDLL(str(path))
+    assert [each for each in functions if not hasattr(library, each)] == []
+
+
+@VERSIONS
+def test_an_importer_compiles_the_sources_by_its_own_build(
+    collar: PlantTables, version: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cmake = pytest.importorskip("cmake", reason="cmake is not installed")
+    from fmpy.build import build_platform_binary
+
+    monkeypatch.setenv("PATH", cmake.CMAKE_BIN_DIR, prepend=os.pathsep)
+    unit = plant_unit(collar, version=version, identifier="rig_plant", tool="sonolube")  # type: ignore[arg-type]
+    unzipped = fmpy.extract(str(written(unit, tmp_path)), str(tmp_path / "unit"))
+    strict = {"CMAKE_COMPILE_WARNING_AS_ERROR:BOOL": "ON"}
+    build_platform_binary(unzipped, build_dir=str(tmp_path), all_warnings=True, cmake_options=strict)
+    start = {"voltage_peak_to_peak": 28.0}
+    rows = fmpy.simulate_fmu(unzipped, stop_time=0.2, output_interval=0.01, start_values=start)
+    assert rows["friction_ratio"][-1] == pytest.approx(float(operating_points(collar.rig).friction_ratio), rel=1e-6)

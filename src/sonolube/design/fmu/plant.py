@@ -19,7 +19,7 @@ from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
 from sonolube.text.units import format_si
 
 _FREQUENCY_BAND = 0.005  # of the drive frequency, to both sides
-_SPAN = 2.0  # factor of load and speed, to both sides
+_LOAD_SPAN, _SPEED_SPAN = 1.25, 2.0  # factors of load and speed, to both sides
 KEYS = ("drive.frequency", "contact.normal_load", "sliding.sliding_speed")
 """Keys of rig files whose range an export chooses, beside that of the commanded quantity."""
 
@@ -139,7 +139,7 @@ def plant_ranges(rig: Rig | ResolvedRig, *, over: Mapping[str, Ends] | None = No
     rig : Rig or ResolvedRig
     over : mapping of str to pair of float, optional
         Ends by key of the rig file, in SI. By default the level goes to the rig's own, the frequency 0.5 % to both
-        sides of its own, load and speed from half to twice their own.
+        sides of its own, the load a factor of 1.25 and the speed one of 2.
 
     Returns
     -------
@@ -176,8 +176,8 @@ def plant_ranges(rig: Rig | ResolvedRig, *, over: Mapping[str, Ends] | None = No
     return PlantRanges(
         level=(0.0, given.get(quantity.key, (0.0, own))[1]),
         frequency=given.get("drive.frequency", (f * (1 - band), f * (1 + band))),
-        normal_load=given.get("contact.normal_load", (load / _SPAN, load * _SPAN)),
-        sliding_speed=given.get("sliding.sliding_speed", (speed / _SPAN, speed * _SPAN)),
+        normal_load=given.get("contact.normal_load", (load / _LOAD_SPAN, load * _LOAD_SPAN)),
+        sliding_speed=given.get("sliding.sliding_speed", (speed / _SPEED_SPAN, speed * _SPEED_SPAN)),
     )
 
 

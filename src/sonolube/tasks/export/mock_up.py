@@ -27,7 +27,7 @@ from sonolube.text.units import format_si
 _OVER = KeyValues(
     "A range of an input: drive.voltage_peak_to_peak (vibration.vibration_amplitude of a rig without a voltage),"
     " drive.frequency, contact.normal_load or sliding.sliding_speed. May come again; the rig's own voltage, 0.5 % of"
-    " the frequency and a factor of 2 either way by default.",
+    " the frequency and a factor of 1.25 of the load and 2 of the speed either way by default.",
     "KEY=FIRST:LAST",
 )
 _CAPACITY = Quantity("Heat capacity of the pin.", "J/K", kind="CAPACITY")
