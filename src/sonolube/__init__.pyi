@@ -2,7 +2,14 @@ from .measurement.measured_runs import read_runs as read_runs
 from .prediction.live_prediction import LivePrediction as LivePrediction
 from .rig.file.reader import read_rig as read_rig
 from .rig.record import Rig as Rig
-from .tasks import horn as horn, identify as identify, impedance as impedance, lab as lab, measure as measure
+from .tasks import (
+    export as export,
+    horn as horn,
+    identify as identify,
+    impedance as impedance,
+    lab as lab,
+    measure as measure,
+)
 from .tasks.compare.compare import compare as compare, fit as fit
 from .tasks.compare.literature import literature as literature
 from .tasks.compare.reproduce import reproduce as reproduce

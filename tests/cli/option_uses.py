@@ -493,6 +493,40 @@ MODES = {
     "control of a device without structure": Mode(
         "control", (COLLAR, "--duration", "0.05s"), {"--quality": "100", "--coupling": "0.3"}
     ),
+    "export of units": Mode(
+        "export fmu",
+        (COLLAR,),
+        {
+            "--fmi": "2",
+            "--over": "sliding.sliding_speed=40mm/s:60mm/s",
+            "--delay": "2ms",
+            "--rate": "2kHz",
+            "--closed-loop": "5ms",
+            "--pin": "steel_1045",
+            "--quality": "100",
+            "--heat-capacity": "3J/K",
+        }
+        | LOADED
+        | {"--amplitude": "waveguide"},
+    ),
+    "export of units of a driven rig": Mode(
+        "export fmu",
+        (RIG, *("--over", "contact.normal_load=2.99N:3.01N", "--over", "drive.voltage_peak_to_peak=0V:9V")),
+        flags=("--no-track",),
+    ),
+    "export of units with heat": Mode(
+        "export fmu",
+        (COLLAR, "--pin", "aluminium_2024", "--disc", "stainless_steel_316"),
+        {
+            "--pin": "stainless_steel_316",
+            "--disc": "aluminium_2024",
+            "--heat-capacity": "3J/K",
+            "--conductance": "0.1W/K",
+        },
+    ),
+    "export of units without structure": Mode(
+        "export fmu", (str(RIGS / "flextensional.toml"),), {"--quality": "100", "--coupling": "0.3"}
+    ),
     "efficiency": Mode(
         "efficiency",
         (RUNS, "--rig", str(RIGS / "power_map.toml")),

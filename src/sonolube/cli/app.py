@@ -81,6 +81,7 @@ COMMANDS = tuple(
 GROUPS = {
     "impedance": "Impedance of piezoelectric parts, by finite elements.",
     "horn": "Design horns and other resonators.",
+    "export": "Export a rig to other programs.",
     "measure": "Measure what instruments recorded: friction, surfaces, spectra, vibration.",
     "lab": "Laboratory: run protocols on a rig, and keep their records.",
     "identify": "Identify the parameters of a rig from facts, and what sets the decay length of a contact.",

@@ -1,1 +1,8 @@
-from . import horn as horn, identify as identify, impedance as impedance, lab as lab, measure as measure
+from . import (
+    export as export,
+    horn as horn,
+    identify as identify,
+    impedance as impedance,
+    lab as lab,
+    measure as measure,
+)

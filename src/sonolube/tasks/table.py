@@ -118,6 +118,7 @@ TASKS: Final = (
     Task(_DESIGN, "uncertainty", "design.uncertainty:uncertainty", "uncertainty.html {rig}-uncertainty-*.*"),
     Task(_DESIGN, "optimise", "design.optimise:optimise", "optimise.html {rig}-optimum.* {rig}-optimum-*.*"),
     Task(_DESIGN, "control", "design.control:control", "control.html {rig}-control.* {rig}-control-*.*"),
+    Task(_DESIGN, "export fmu", "export.mock_up:fmu", "{rig}-plant.fmu {rig}-controller.fmu"),
     Task(_DESIGN, "efficiency", "design.efficiency:efficiency", "efficiency.html {runs}-efficiency.*"),
     Task(_DESIGN, "horn design", "horn.horns:design", "{part}-axis.* {part}-mode.* {part}-drawing.* {part}-tuned.step"),
     Task(_DESIGN, "horn face", "horn.horns:face", "horn-{horn}-face.*"),

@@ -71,6 +71,30 @@ def assumed_resonance(rig: Rig, *, quality: float, coupling: float) -> tuple[loo
     return loops.assumed_mode(rig, quality_factor=quality, coupling_factor=coupling), {"resonance": text}
 
 
+def resonance_without_structure(
+    rig: Rig, quality: float, coupling: float
+) -> tuple[loops.VibrationMode | None, dict[str, str]]:
+    """Resonance of a rig without a structure, with what is assumed of it; None of one with a structure.
+
+    Parameters
+    ----------
+    rig : Rig
+    quality, coupling : float
+        Quality factor and effective coupling.
+
+    Returns
+    -------
+    VibrationMode or None
+    dict of str to str
+    """
+    if rig.structure is not None:
+        return None, {}
+    if commanded_quantity(rig) is AMPLITUDE:
+        text = f"the amplitude follows its set point as a resonance of quality factor {quality:g}; not measured"
+        return loops.amplitude_mode(rig, quality_factor=quality), {"amplitude control": text}
+    return assumed_resonance(rig, quality=quality, coupling=coupling)
+
+
 def friction_force(name: str, target: str | float, *, normal_load: float) -> float:
     """Friction force of an argument that takes a coefficient or a force.
 
@@ -269,7 +293,7 @@ def control(
         ),
     )
     with stage("controlling"):
-        mode, assumed = _assumed(known, quality, coupling)
+        mode, assumed = resonance_without_structure(known, quality, coupling)
         line = _efficiency_line(in_si("efficiency", efficiency)) if feed_forward == "efficiency" else None
         study = loops.design_control(known, settings, mode=mode, line=line)
         suppression = stick_slip_suppression(known, study) if stick_slip else None
@@ -295,16 +319,6 @@ def _limits(
         slew_rate_maximum=_value_or(inf, in_si("slew_limit", slew_limit)),
     )
     return {"amplifier": amplifier}
-
-
-def _assumed(rig: Rig, quality: float, coupling: float) -> tuple[loops.VibrationMode | None, dict[str, str]]:
-    """Resonance of a rig without a structure, with what is assumed of it; None of one with a structure."""
-    if rig.structure is not None:
-        return None, {}
-    if commanded_quantity(rig) is AMPLITUDE:
-        text = f"the amplitude follows its set point as a resonance of quality factor {quality:g}; not measured"
-        return loops.amplitude_mode(rig, quality_factor=quality), {"amplitude control": text}
-    return assumed_resonance(rig, quality=quality, coupling=coupling)
 
 
 def _times(rate: Number, delay: Number, duration: Number) -> tuple[float, float, float]:

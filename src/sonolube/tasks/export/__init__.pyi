@@ -1,0 +1,1 @@
+from .mock_up import fmu as fmu
