@@ -35,6 +35,9 @@ def test_the_error_of_the_default_model_is_the_one_that_compare_ranks_by() -> No
 
 def test_every_friction_model_has_an_error_at_its_defaults_and_none_at_other_parameters() -> None:
     for model in FRICTION_MODELS.values():
+        if model.for_soft_bodies:  # no published test is of one
+            assert unseen_error(model()) is None
+            continue
         found = unseen_error(model())
         assert found is not None
         assert found.rms > 0

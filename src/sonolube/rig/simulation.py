@@ -225,8 +225,26 @@ def vibrated_friction(rig: Rig | ResolvedRig, *, sliding_speed: ArrayLike) -> Vi
     return VibratedFriction(
         ratio=ratio,
         origin=_origin(vibration),
-        caveats=(*_caveats(resolved, vibration), *ratio_caveats(friction_ratio=ratio.friction_ratio)),
+        caveats=(
+            *_caveats(resolved, vibration),
+            *ratio_caveats(friction_ratio=ratio.friction_ratio),
+            *tested_caveats(resolved.rig),
+        ),
     )
+
+
+def mechanism_text(rig: Rig | ResolvedRig) -> str:
+    """What the friction model of a rig makes of its vibration besides the ratio, in one line; empty where nothing."""
+    resolved = resolved_rig(rig)
+    if not resolved.rig.friction_model.for_soft_bodies:
+        return ""
+    return resolved.rig.friction_model.mechanism(resolved.rig.contact, steady_vibration(resolved).motions[0])
+
+
+def tested_caveats(rig: Rig) -> tuple[str, ...]:
+    """Line on how far the friction model of a rig was tested, where no comparison with published tests tells it."""
+    model = rig.friction_model
+    return (f"friction model {model.name}: {model.tested}",) if model.tested else ()
 
 
 def friction_model_named(rig: Rig, name: str) -> FrictionModel:
@@ -299,7 +317,10 @@ def _models_that_hold(resolved: ResolvedRig) -> str:
     """Range of the friction ratio by the other friction models that hold for a rig's vibration."""
     holding, rig = [], resolved.rig
     for name in FRICTION_MODELS:
-        if name == rig.friction_model.name:
+        if (
+            name == rig.friction_model.name
+            or FRICTION_MODELS[name].for_soft_bodies != rig.friction_model.for_soft_bodies
+        ):
             continue
         other = resolved.with_friction_model(friction_model_named(rig, name))
         try:

@@ -79,6 +79,8 @@ from .models.range_check import (
     model_friction as model_friction,
     ratio_caveats as ratio_caveats,
 )
+from .models.soft_layer import SoftLayerModel as SoftLayerModel
+from .models.squeeze_film import PartialLevitation as PartialLevitation, SqueezeFilm as SqueezeFilm
 from .oscillating_contact.approximations import (
     approximate_guided_ratio as approximate_guided_ratio,
     approximate_longitudinal_ratio as approximate_longitudinal_ratio,
