@@ -124,7 +124,7 @@ def leakage_factor(*, squeeze_number: ArrayLike) -> Floats:
     Parameters
     ----------
     squeeze_number : array_like, any shape
-        That of `squeeze_number`.
+        Of the film, sigma. []
 
     Returns
     -------

@@ -37,6 +37,7 @@ from .lubrication import (
     best_lubrication_method as best_lubrication_method,
     hersey_number as hersey_number,
     lubrication_coefficients as lubrication_coefficients,
+    shared_coefficients as shared_coefficients,
     stribeck_coefficient as stribeck_coefficient,
 )
 from .metal_forming import (
@@ -45,6 +46,13 @@ from .metal_forming import (
     acoustic_softening_ratio as acoustic_softening_ratio,
     reference_intensity_from_test as reference_intensity_from_test,
     superposed_mean_stress as superposed_mean_stress,
+)
+from .mixed_lubrication import (
+    FilmLubricant as FilmLubricant,
+    MixedLubrication as MixedLubrication,
+    elastohydrodynamic_thickness as elastohydrodynamic_thickness,
+    inclined_pad as inclined_pad,
+    mixed_lubrication as mixed_lubrication,
 )
 from .models import (
     FRICTION_MODELS as FRICTION_MODELS,
