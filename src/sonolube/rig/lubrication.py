@@ -62,9 +62,11 @@ class LubricationPoint:
     amplitude_origin : str
         The same in words, with the numbers behind it.
     film_coefficient : float
-        Coefficient of friction of the film.
-    film_thickness, film_ratio : float or None
-        Gap, in m, and that over the combined rms height; None for a film that is stated.
+        Coefficient of friction of the film. []
+    film_thickness : float or None
+        Gap between the mean planes; None for a film that is stated. [m]
+    film_ratio : float or None
+        That gap over the combined rms height; None for a film that is stated. []
     caveats : tuple of str
         What speaks against trusting the numbers, each in one line.
     """

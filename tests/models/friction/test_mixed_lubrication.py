@@ -26,9 +26,9 @@ LOAD = 3.0
 
 @pytest.mark.parametrize(("distance", "printed"), [(0.01, 0.059e-6), (1.0, 0.281e-6)])
 def test_a_ball_that_rolls_down_a_plate_has_the_printed_film(distance: float, printed: float) -> None:
-    # an exercise with its answers (tutorbin.com), after G. W. Stachowiak and A. W. Batchelor, Engineering Tribology: a
-    # steel ball of 30 mm rolls 1 cm and 1 m down a plate at 45 degrees, 50 cP, 2.2e-8 m2/N, 210 GPa, 0.3, 7800 kg/m3. That book takes half
-    # the radius of a ball on a flat, and half the speed of the ball
+    # An exercise with its answers (tutorbin.com, "a steel ball starts rolling from rest down a steel plate"): 30 mm, 1
+    # cm and 1 m at 45 degrees, 50 cP, 2.2e-8 m2/N, 210 GPa, 0.3, 7800 kg/m3. The answers take 1/R = 1/Rx + 1/Ry, half
+    # the radius of the ball, and half its speed.
     speed = np.sqrt(10 / 7 * 9.81 * distance * np.sin(np.pi / 4))
     weight = 7800 * np.pi / 6 * 0.03**3 * 9.81 * np.cos(np.pi / 4)
     least, central = elastohydrodynamic_thickness(

@@ -267,7 +267,7 @@ def _film_load(lubricant: FilmLubricant, contact: RoughContact, v: Floats, h: Fl
     """Load that a film of a thickness carries. [N]"""
     if lubricant.tip_radius is None:
         load, _ = inclined_pad(inlet_ratio=lubricant.inlet_ratio)
-        return load * lubricant.dynamic_viscosity * v * contact.nominal_area**1.5 / h**2
+        return np.asarray(load * lubricant.dynamic_viscosity * v * contact.nominal_area**1.5 / h**2)
     R, E = lubricant.tip_radius, 2 * contact.pair.effective_modulus
     with np.errstate(divide="ignore"):
         log_u = np.log(lubricant.dynamic_viscosity * v / 2 / (E * R))
@@ -279,7 +279,7 @@ def _film_load(lubricant: FilmLubricant, contact: RoughContact, v: Floats, h: Fl
         (soft + 0.64 * log_u - log_h) / 0.22,
         log_u + (math.log(_RIGID_POINT) - log_h) / 2,
     )
-    return E * R**2 * np.exp(np.minimum(np.maximum.reduce(logs), _LARGEST_LOG))
+    return np.asarray(E * R**2 * np.exp(np.minimum(np.maximum.reduce(logs), _LARGEST_LOG)))
 
 
 def _film_coefficient(
