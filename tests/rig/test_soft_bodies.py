@@ -11,6 +11,7 @@ from sonolube.errors import InvalidInput, MissingProperty
 from sonolube.prediction.applicability import applicability, friction_interval
 from sonolube.rig import friction_point, read_rig, simulate, wear_point
 from sonolube.rig.file.reader import rig_from
+from sonolube.rig.simulation import operating_caveats
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
 SOFT = ("finger_on_glass", "pom_on_steel")
@@ -44,7 +45,12 @@ def test_plastic_on_steel_is_eased_by_bouncing_on_its_own_elasticity() -> None:
 @pytest.mark.parametrize("name", SOFT)
 def test_every_answer_says_how_far_it_was_tested(name: str) -> None:
     rig = read_rig(RIGS / f"{name}.toml")
-    for caveats in (friction_point(rig).caveats, simulate(rig).caveats):
+    for caveats in (
+        friction_point(rig).caveats,
+        simulate(rig).caveats,
+        wear_point(rig).caveats,
+        operating_caveats(rig),
+    ):
         assert any("theory alone" in line for line in caveats)
 
 
@@ -55,6 +61,7 @@ def test_wear_is_withheld_with_the_reason_and_friction_is_not(name: str) -> None
     assert np.isfinite(result.friction.friction_ratio)
     for wear in (result.wear, point):
         assert np.isnan(wear.wear_rate)
+        assert np.isnan(wear.intrinsic_wear_rate)
         assert wear.reason is not None
         assert "whose wear no model here has; measure it" in wear.reason
 

@@ -225,11 +225,7 @@ def vibrated_friction(rig: Rig | ResolvedRig, *, sliding_speed: ArrayLike) -> Vi
     return VibratedFriction(
         ratio=ratio,
         origin=_origin(vibration),
-        caveats=(
-            *_caveats(resolved, vibration),
-            *ratio_caveats(friction_ratio=ratio.friction_ratio),
-            *tested_caveats(resolved.rig),
-        ),
+        caveats=(*_caveats(resolved, vibration), *ratio_caveats(friction_ratio=ratio.friction_ratio)),
     )
 
 
@@ -239,12 +235,6 @@ def mechanism_text(rig: Rig | ResolvedRig) -> str:
     if not resolved.rig.friction_model.for_soft_bodies:
         return ""
     return resolved.rig.friction_model.mechanism(resolved.rig.contact, steady_vibration(resolved).motions[0])
-
-
-def tested_caveats(rig: Rig) -> tuple[str, ...]:
-    """Line on how far the friction model of a rig was tested, where no comparison with published tests tells it."""
-    model = rig.friction_model
-    return (f"friction model {model.name}: {model.tested}",) if model.tested else ()
 
 
 def friction_model_named(rig: Rig, name: str) -> FrictionModel:
@@ -297,7 +287,9 @@ def _wear_point(
         reason = friction.reason
     if not reason and not vibration.prescribed:
         caveats = (*caveats, *rise_caveats(vibration.motions, wear_model=model))
-    still = float(cube_wear_rate(resolved.rig.contact, normal_load=resolved.rig.normal_load))
+    is_soft = resolved.rig.friction_model.for_soft_bodies  # of which the cube tells nothing, also without vibration
+    rate = cube_wear_rate(resolved.rig.contact, normal_load=resolved.rig.normal_load)
+    still = float("nan") if is_soft else float(rate)
     valid = float("nan") if reason else ratio
     return WearPoint(
         wear_rate=valid * still,
@@ -354,12 +346,19 @@ def _stated_origin(used: ResolvedVibration) -> VibrationOrigin:
 
 
 def _caveats(resolved: ResolvedRig, vibration: SteadyVibration) -> tuple[str, ...]:
-    """Caveats of contact, amplitude, stack and gap."""
+    """Caveats of contact, amplitude, friction model, stack and gap."""
     return (
         *resting_caveats(resolved, vibration_amplitude=vibration.vibration_amplitude),
         *source_caveats(resolved, vibration_amplitude=vibration.vibration_amplitude),
+        *_tested_caveats(resolved.rig),
         *([] if vibration.prescribed else _stack_caveats(resolved, vibration)),
     )
+
+
+def _tested_caveats(rig: Rig) -> tuple[str, ...]:
+    """Line on how far the friction model of a rig was tested, where no comparison with published tests tells it."""
+    model = rig.friction_model
+    return (f"friction model {model.name}: {model.tested}",) if model.tested else ()
 
 
 def _stack_caveats(resolved: ResolvedRig, vibration: SteadyVibration) -> tuple[str, ...]:
