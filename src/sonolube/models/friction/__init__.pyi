@@ -28,6 +28,13 @@ from .laws.spring_driven_slider import (
     DriveForce as DriveForce,
     spring_driven_slider_force as spring_driven_slider_force,
 )
+from .lubricant_film import (
+    FilmLubricant as FilmLubricant,
+    MixedLubrication as MixedLubrication,
+    elastohydrodynamic_thickness as elastohydrodynamic_thickness,
+    inclined_pad as inclined_pad,
+    mixed_lubrication as mixed_lubrication,
+)
 from .lubrication import (
     BoundaryLubricant as BoundaryLubricant,
     LubricationCoefficients as LubricationCoefficients,
@@ -46,13 +53,6 @@ from .metal_forming import (
     acoustic_softening_ratio as acoustic_softening_ratio,
     reference_intensity_from_test as reference_intensity_from_test,
     superposed_mean_stress as superposed_mean_stress,
-)
-from .mixed_lubrication import (
-    FilmLubricant as FilmLubricant,
-    MixedLubrication as MixedLubrication,
-    elastohydrodynamic_thickness as elastohydrodynamic_thickness,
-    inclined_pad as inclined_pad,
-    mixed_lubrication as mixed_lubrication,
 )
 from .models import (
     FRICTION_MODELS as FRICTION_MODELS,
