@@ -17,6 +17,7 @@ from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE
 from sonolube.rig import STATUSES, Rig, friction_point, operating_points, point_batch, read_rig
 
 _RIGS = Path(__file__).parents[2] / "examples" / "rigs"
+_HARD_MODELS = [name for name, model in FRICTION_MODELS.items() if not model.for_soft_bodies]
 _POINTS = 12  # of a computed vibration in a trial
 _CLOSE = 3e-4  # of the friction ratio, the error of tabulated ratios and of averages
 
@@ -47,7 +48,7 @@ def _changed(rig: Rig, rng: random.Random) -> Rig:
         sliding_speed=rig.sliding_speed * 10 ** rng.uniform(-1, 1),
         vibration_amplitude=_own_amplitude(rig) * 10 ** rng.uniform(-1, 0.7),
         amplitude_source="computed" if rig.structure is not None else "measured",
-        friction_model=FRICTION_MODELS[rng.choice(list(FRICTION_MODELS))](),
+        friction_model=FRICTION_MODELS[rng.choice(_HARD_MODELS)](),
     )
 
 

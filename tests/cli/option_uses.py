@@ -245,6 +245,14 @@ MODES = {
         (RIG, "--film-coefficient", "0.1", "--asperity-pressure", "10MPa", "--pin", "m50", "--disc", "m50"),
         {"--pin": "aluminium_2024", "--disc": "aluminium_2024"},
     ),
+    "regime by viscosity": Mode(
+        "regime", (RIG, "--viscosity", "1 Pa s"), {"--viscosity": "10 Pa s", "--inlet-ratio": "4"}
+    ),
+    "regime of a ball": Mode(
+        "regime",
+        (RIG, "--viscosity", "1 Pa s", "--tip-radius", "5mm"),
+        {"--tip-radius": "50mm", "--pressure-viscosity": "4e-8 /Pa"},
+    ),
     "modes of a part": Mode(
         "modes",
         ("block", *SIZES, "--count", "1", "--tolerance", "0.5"),

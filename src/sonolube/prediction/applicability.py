@@ -24,7 +24,9 @@ from sonolube.validation.published_tests import friction_tests
 NORMAL_VIBRATION: Final = "The vibration is along the normal of the contact."
 """Sentence of every prediction: all published tests that it learns from have this direction."""
 
-_SOFT_FAMILIES: Final = frozenset({"polymer", "rubber", "elastomer", "felt", "skin", "foam", "textile", "leather"})
+_SOFT_FAMILIES: Final = frozenset(
+    {"polymer", "rubber", "elastomer", "felt", "skin", "foam", "textile", "leather", "webbing"}
+)
 _SOFT_MODULUS: Final = 10e9  # effective, in Pa: below that of any pair of metals, glasses or ceramics
 _METALS: Final = frozenset(
     {
@@ -59,8 +61,9 @@ def applicability(rig: Rig, *, lubricant: bool = False) -> Applicability:
     """Direction, bodies, lubricant and frequency of a rig against what predictions are learned from.
 
     Refused are a vibration with a part in the plane of contact, and soft bodies: polymers, rubber, felt, skin, foam,
-    or an effective modulus below 10 GPa where not both materials are named. A coefficient of friction below 0.15 of
-    metals, or of hard bodies without names, counts as that of a lubricated contact.
+    an effective modulus below 10 GPa where not both materials are named, or a friction model of soft bodies. A
+    coefficient of friction below 0.15 of metals, or of hard bodies without names, counts as that of a lubricated
+    contact.
     """
     lubricated = _lubrication(rig, lubricant=lubricant)
     return Applicability(
@@ -86,7 +89,9 @@ def _soft(rig: Rig) -> str | None:
     bodies = named_bodies(rig)
     soft = [body.title for body in bodies if body.family in _SOFT_FAMILIES]
     modulus = rig.contact.pair.effective_modulus
-    if soft:
+    if rig.friction_model.for_soft_bodies:
+        why = f"friction model {rig.friction_model.name} is of a soft or floating contact"
+    elif soft:
         why = f"{' and '.join(soft)} {'is' if len(soft) == 1 else 'are'} soft"
     elif len(bodies) < 2 and modulus < _SOFT_MODULUS:
         why = f"an effective modulus of {format_si(modulus, 'Pa')} is that of a soft body"
@@ -94,7 +99,7 @@ def _soft(rig: Rig) -> str | None:
         return None
     return (
         f"{rig.title}: {why}, and all published tests behind a prediction are of hard bodies; use sonolube friction,"
-        " or the soft layers of sonolube.models.friction (exponential_layer_ratio, linear_layer_ratio)"
+        " whose models soft_layer (exponential_layer_ratio, linear_layer_ratio) and squeeze_film are theory alone"
     )
 
 

@@ -158,6 +158,11 @@ def mean_wear(
     if resolved.rig.direction.is_in_plane:
         return float("nan"), _no_wear_within_plane(resolved.rig)
     ratio, smallest = _raw_wear_ratio(resolved, motions, wear_model, vibration_amplitude)
+    if resolved.rig.friction_model.for_soft_bodies:
+        return ratio, (
+            f"{OUTSIDE_MODEL_RANGE}: wear by the cube is of hard rough bodies, and friction model"
+            f" {resolved.rig.friction_model.name} of a soft or floating one, whose wear no model here has; measure it"
+        )
     if smallest > 0:
         return ratio, None
     others = [
@@ -186,7 +191,7 @@ def wear_model_that_holds(
 
     None where no model holds.
     """
-    if resolved.rig.direction.is_in_plane:
+    if resolved.rig.direction.is_in_plane or resolved.rig.friction_model.for_soft_bodies:
         return None
     names = sorted(WEAR_MODELS, key=lambda name: name != _RISING_WEAR_MODEL)
     return next((name for name in names if _raw_wear_ratio(resolved, motions, name, vibration_amplitude)[1] > 0), None)
@@ -325,7 +330,8 @@ def decay_length_caveat(rig: Rig | ResolvedRig, *, vibration_amplitude: float | 
 
 def resting_caveats(resolved: ResolvedRig, *, vibration_amplitude: float | None = None) -> tuple[str, ...]:
     """Caveats of the contact of a rig under its load, that of its decay length included."""
-    caveat = decay_length_caveat(resolved, vibration_amplitude=vibration_amplitude)
+    is_soft = resolved.rig.friction_model.for_soft_bodies  # the decay length of hard worn contacts tells nothing of it
+    caveat = None if is_soft else decay_length_caveat(resolved, vibration_amplitude=vibration_amplitude)
     own = contact_caveats(resolved.rig.contact, separation=resolved.separation)
     return (*own, *(() if caveat is None else (caveat,)))
 

@@ -17,6 +17,23 @@ from sonolube.rig.simulation import VibratedFriction, vibrated_friction
 _SPAN = 10.0  # how far the map reaches to either side of the rig's point, as a factor
 _RESOLUTION = 121
 
+_FILM_TESTED = (
+    "film and asperities share the load by theory alone: compared with no friction, since D 4.2 prints neither"
+    " viscosity nor friction of its lubricant; asperities in it rub with the dry coefficient, which additives lower"
+)
+_FILM_VIBRATED = (
+    "the film is that without vibration: that vibration pumps lubricant into the contact, squeezes it out or swages a"
+    " solid one into the surface has no model here"
+)
+_FILM_PAD = (
+    "a flat pad has the film of an endlessly wide one at its inclination, an upper bound;"
+    " for a ball give its tip radius"
+)
+
+
+Lubricant = friction.BoundaryLubricant | friction.FilmLubricant
+"""Lubricant with a film that is stated, or one by viscosity."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class LubricationPoint:
@@ -44,6 +61,12 @@ class LubricationPoint:
         Where the amplitude comes from.
     amplitude_origin : str
         The same in words, with the numbers behind it.
+    film_coefficient : float
+        Coefficient of friction of the film. []
+    film_thickness : float or None
+        Gap between the mean planes; None for a film that is stated. [m]
+    film_ratio : float or None
+        That gap over the combined rms height; None for a film that is stated. []
     caveats : tuple of str
         What speaks against trusting the numbers, each in one line.
     """
@@ -58,6 +81,9 @@ class LubricationPoint:
     vibration_amplitude: float
     amplitude_source: str
     amplitude_origin: str
+    film_coefficient: float
+    film_thickness: float | None = None
+    film_ratio: float | None = None
     caveats: tuple[str, ...]
 
 
@@ -80,15 +106,14 @@ class LubricationMap:
     best: NDArray[np.str_]
 
 
-def lubrication_point(
-    rig: Rig | ResolvedRig, *, lubricant: friction.BoundaryLubricant, smallest_gain: float = 0.0
-) -> LubricationPoint:
+def lubrication_point(rig: Rig | ResolvedRig, *, lubricant: Lubricant, smallest_gain: float = 0.0) -> LubricationPoint:
     """Friction of a rig's contact by each method of lubrication at its load and speed, and the best method.
 
     Parameters
     ----------
     rig : Rig or ResolvedRig
-    lubricant : BoundaryLubricant
+    lubricant : BoundaryLubricant or FilmLubricant
+        With a share by the pressure alone, or by viscosity, speed, load and roughness.
     smallest_gain : float
         Fraction by which vibration must lower the friction of the lubricated contact to be worth its power.
 
@@ -108,26 +133,25 @@ def lubrication_point(
     pressure = rig.normal_load / rig.contact.nominal_area
     require_positive(sliding_speed=rig.sliding_speed)
     vibrated = vibrated_friction(resolved, sliding_speed=rig.sliding_speed)
-    found = _coefficients(rig, lubricant, vibrated, nominal_pressure=pressure)
+    film = _film(rig, lubricant, sliding_speed=rig.sliding_speed, nominal_pressure=pressure)
+    found = _coefficients(rig, film, vibrated)
     return LubricationPoint(
         sliding_speed=rig.sliding_speed,
         nominal_pressure=pressure,
         friction_coefficient=rig.friction_coefficient,
-        asperity_load_fraction=float(friction.asperity_load_fraction(lubricant, nominal_pressure=pressure)),
+        asperity_load_fraction=float(film.asperity_load_fraction),
         coefficients=found,
         best=str(friction.best_lubrication_method(found, smallest_gain=smallest_gain)),
         friction_model=rig.friction_model.name,
         **vibrated.origin,
-        caveats=(
-            *vibrated.caveats,
-            "load sharing in proportion to the pressure: the simplest law that D Fig. 4.28 allows",
-        ),
+        film_coefficient=float(np.asarray(film.film_coefficient)),
+        film_thickness=film.film_thickness,
+        film_ratio=film.film_ratio,
+        caveats=(*vibrated.caveats, *film.caveats),
     )
 
 
-def lubrication_map(
-    rig: Rig | ResolvedRig, *, lubricant: friction.BoundaryLubricant, smallest_gain: float = 0.0
-) -> LubricationMap:
+def lubrication_map(rig: Rig | ResolvedRig, *, lubricant: Lubricant, smallest_gain: float = 0.0) -> LubricationMap:
     """Best method of lubrication over a decade to either side of a rig's speed and pressure.
 
     Parameters
@@ -158,7 +182,8 @@ def lubrication_map(
     factors = np.geomspace(1 / _SPAN, _SPAN, _RESOLUTION)
     speeds, pressures = rig.sliding_speed * factors, rig.normal_load / rig.contact.nominal_area * factors
     vibrated = vibrated_friction(resolved, sliding_speed=speeds)
-    found = _coefficients(rig, lubricant, vibrated, nominal_pressure=pressures[:, np.newaxis])
+    film = _film(rig, lubricant, sliding_speed=speeds, nominal_pressure=pressures[:, np.newaxis])
+    found = _coefficients(rig, film, vibrated)
     return LubricationMap(
         sliding_speed=speeds,
         nominal_pressure=pressures,
@@ -188,12 +213,40 @@ def _wearing(body: Material) -> WearPairBody:
     return WearPairBody(name=body.title, hardness=body.value("hardness"), structure=CrystalStructure(name))
 
 
-def _coefficients(
-    rig: Rig, lubricant: friction.BoundaryLubricant, vibrated: VibratedFriction, *, nominal_pressure: ArrayLike
-) -> friction.LubricationCoefficients:
-    return friction.lubrication_coefficients(
-        lubricant,
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Film:
+    """Share of the load on asperities and coefficient of the film; of one point also thickness and its ratio."""
+
+    asperity_load_fraction: Floats
+    film_coefficient: ArrayLike
+    film_thickness: float | None = None
+    film_ratio: float | None = None
+    caveats: tuple[str, ...]
+
+
+def _film(rig: Rig, lubricant: Lubricant, *, sliding_speed: ArrayLike, nominal_pressure: ArrayLike) -> _Film:
+    if isinstance(lubricant, friction.BoundaryLubricant):
+        return _Film(
+            asperity_load_fraction=friction.asperity_load_fraction(lubricant, nominal_pressure=nominal_pressure),
+            film_coefficient=lubricant.film_coefficient,
+            caveats=("load sharing in proportion to the pressure: the simplest law that D Fig. 4.28 allows",),
+        )
+    load = np.asarray(nominal_pressure) * rig.contact.nominal_area
+    mixed = friction.mixed_lubrication(lubricant, rig.contact, sliding_speed=sliding_speed, normal_load=load)
+    single = mixed.film_ratio.size == 1
+    return _Film(
+        asperity_load_fraction=mixed.asperity_load_fraction,
+        film_coefficient=mixed.film_coefficient,
+        film_thickness=float(mixed.film_thickness) if single else None,
+        film_ratio=float(mixed.film_ratio) if single else None,
+        caveats=(_FILM_TESTED, _FILM_VIBRATED, *(() if lubricant.tip_radius is not None else (_FILM_PAD,))),
+    )
+
+
+def _coefficients(rig: Rig, film: _Film, vibrated: VibratedFriction) -> friction.LubricationCoefficients:
+    return friction.shared_coefficients(
         friction_coefficient=rig.friction_coefficient,
         friction_ratio=vibrated.ratio.require_braking(),
-        nominal_pressure=nominal_pressure,
+        asperity_load_fraction=film.asperity_load_fraction,
+        film_coefficient=film.film_coefficient,
     )

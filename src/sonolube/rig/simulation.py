@@ -230,6 +230,14 @@ def vibrated_friction(rig: Rig | ResolvedRig, *, sliding_speed: ArrayLike) -> Vi
     )
 
 
+def mechanism_text(rig: Rig | ResolvedRig) -> str:
+    """What the friction model of a rig makes of its vibration besides the ratio, in one line; empty where nothing."""
+    resolved = resolved_rig(rig)
+    if not resolved.rig.friction_model.for_soft_bodies:
+        return ""
+    return resolved.rig.friction_model.mechanism(resolved.rig.contact, steady_vibration(resolved).motions[0])
+
+
 def friction_model_named(rig: Rig, name: str) -> FrictionModel:
     """Friction model of a name, with those parameters of the rig's model that it has too."""
     model = FRICTION_MODELS.named(name)
@@ -282,7 +290,9 @@ def _wear_point(
         caveats = (*caveats, "wear is by the motion along the normal; the path within the plane is left out")
     if not reason and not vibration.prescribed:
         caveats = (*caveats, *rise_caveats(vibration.motions, wear_model=model))
-    still = float(cube_wear_rate(resolved.rig.contact, normal_load=resolved.rig.normal_load))
+    is_soft = resolved.rig.friction_model.for_soft_bodies  # of which the cube tells nothing, also without vibration
+    rate = cube_wear_rate(resolved.rig.contact, normal_load=resolved.rig.normal_load)
+    still = float("nan") if is_soft else float(rate)
     valid = float("nan") if reason else ratio
     return WearPoint(
         wear_rate=valid * still,
@@ -302,7 +312,12 @@ def _models_that_hold(resolved: ResolvedRig) -> str:
     """Range of the friction ratio by the other friction models that hold for a rig's vibration."""
     holding, rig = [], resolved.rig
     for name in FRICTION_MODELS:
-        if name == rig.friction_model.name or not rig.direction.parts <= FRICTION_MODELS[name].directions:
+        model, own = FRICTION_MODELS[name], rig.friction_model
+        if (
+            name == own.name
+            or not rig.direction.parts <= model.directions
+            or model.for_soft_bodies != own.for_soft_bodies
+        ):
             continue
         other = resolved.with_friction_model(friction_model_named(rig, name))
         try:
@@ -336,14 +351,21 @@ def _stated_origin(used: ResolvedVibration) -> VibrationOrigin:
 
 
 def _caveats(resolved: ResolvedRig, vibration: SteadyVibration) -> tuple[str, ...]:
-    """Caveats of direction, contact, amplitude, stack and gap."""
+    """Caveats of direction, contact, amplitude, friction model, stack and gap."""
     return (
         *direction_caveats(resolved),
         *held_back_caveats(resolved, vibration_amplitude=vibration.vibration_amplitude),
         *resting_caveats(resolved, vibration_amplitude=vibration.vibration_amplitude),
         *source_caveats(resolved, vibration_amplitude=vibration.vibration_amplitude),
+        *_tested_caveats(resolved.rig),
         *([] if vibration.prescribed else _stack_caveats(resolved, vibration)),
     )
+
+
+def _tested_caveats(rig: Rig) -> tuple[str, ...]:
+    """Line on how far the friction model of a rig was tested, where no comparison with published tests tells it."""
+    model = rig.friction_model
+    return (f"friction model {model.name}: {model.tested}",) if model.tested else ()
 
 
 def _stack_caveats(resolved: ResolvedRig, vibration: SteadyVibration) -> tuple[str, ...]:

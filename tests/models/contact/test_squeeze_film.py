@@ -5,7 +5,13 @@ import pytest
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput, ModelRangeWarning, OutsideRange
-from sonolube.models.contact import levitation_gap, squeeze_film_pressure, squeeze_number
+from sonolube.models.contact import (
+    leakage_factor,
+    levitation_amplitude,
+    levitation_gap,
+    squeeze_film_pressure,
+    squeeze_number,
+)
 
 DISC = {"face_radius": 10e-3, "frequency": 20e3}
 
@@ -76,3 +82,32 @@ def test_an_amplitude_above_the_film_thickness_and_too_thick_a_film_are_refused(
         squeeze_film_pressure(vibration_amplitude=2e-6, film_thickness=1e-6, ambient_pressure=1e5)
     with raises(OutsideRange, match="too low"):
         levitation_gap(normal_load=1e-6, vibration_amplitude=10e-6, **DISC)
+
+
+@pytest.mark.parametrize("sigma", [5.0, 30.0, 100.0])
+def test_leakage_at_the_rim_is_that_of_reynolds_equation_for_a_small_amplitude(sigma: float) -> None:
+    limit = float(squeeze_film_pressure(vibration_amplitude=0.1, film_thickness=1.0, ambient_pressure=1.0))
+    assert leakage_factor(squeeze_number=sigma) == approx(mean_excess_by_reynolds(sigma, 0.1) / limit, rel=0.03)
+
+
+def test_leakage_has_its_limits_at_slow_and_fast_vibration() -> None:
+    assert leakage_factor(squeeze_number=1e6) == approx(1 - np.sqrt(2 / 1e6), abs=1e-6)
+    slow = leakage_factor(squeeze_number=[0.05, 0.1])
+    assert slow[1] == approx(4 * slow[0], rel=1e-2)
+    assert slow[1] < 1e-3
+
+
+def test_the_pressure_at_the_mean_gap_is_the_root_of_the_interior() -> None:
+    # p h is constant over the period in the interior: p/p_a = sqrt(1 + 3/2 (a/h)^2) at the mean gap; its mean over
+    # the period is more by the mean of h/(h + a cos) = 1/sqrt(1 - (a/h)^2)
+    for ratio in (0.1, 0.5, 0.9):
+        phase = np.linspace(0, 2 * np.pi, 2000, endpoint=False)
+        pressure = np.sqrt(1 + 1.5 * ratio**2) / (1 + ratio * np.cos(phase))
+        excess = squeeze_film_pressure(vibration_amplitude=ratio, film_thickness=1.0, ambient_pressure=1.0)
+        assert 1 + excess == approx(pressure.mean(), rel=1e-9)
+
+
+def test_the_amplitude_that_carries_a_load_is_that_of_the_levitation_gap() -> None:
+    h = levitation_gap(normal_load=3.0, vibration_amplitude=2e-6, **DISC)
+    found = levitation_amplitude(normal_load=3.0, film_thickness=h, face_radius=10e-3, ambient_pressure=101325.0)
+    assert found == approx(2e-6)

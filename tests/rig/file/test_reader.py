@@ -33,6 +33,8 @@ NAMES = (
     "welder_flat",
     "power_map",
     "cutter_head",
+    "finger_on_glass",
+    "pom_on_steel",
     "collar",
     "coated_plate",
     "coated_temperature",
@@ -45,7 +47,7 @@ def changed(old: str, new: str) -> dict[str, Any]:
     return tomllib.loads(TRIBOMETER.replace(old, new))
 
 
-def test_the_twelve_rigs_of_the_dissertation_are_there() -> None:
+def test_the_rigs_of_the_dissertation_and_others_are_there() -> None:
     others = {"tribometer_uncertain", "contact_resonance", "bronze_bush", "vibrating_base"}
     assert {path.stem for path in RIGS.glob("*.toml")} == {*NAMES, *others}
 

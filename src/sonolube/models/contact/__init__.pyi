@@ -62,7 +62,19 @@ from .rough import (
     separation as separation,
     separation_range as separation_range,
 )
+from .soft_layer import (
+    PronySeries as PronySeries,
+    SoftLayer as SoftLayer,
+    complex_modulus as complex_modulus,
+    dynamic_stiffness_ratio as dynamic_stiffness_ratio,
+    layer_loss_power as layer_loss_power,
+    layer_normal_stiffness as layer_normal_stiffness,
+    layer_tangential_stiffness as layer_tangential_stiffness,
+    oedometric_modulus as oedometric_modulus,
+)
 from .squeeze_film import (
+    leakage_factor as leakage_factor,
+    levitation_amplitude as levitation_amplitude,
     levitation_gap as levitation_gap,
     squeeze_film_pressure as squeeze_film_pressure,
     squeeze_number as squeeze_number,

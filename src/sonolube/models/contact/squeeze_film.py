@@ -118,6 +118,85 @@ def squeeze_film_pressure(
     return np.asarray(p_a * (np.sqrt((1 + 1.5 * excursion) / (1 - excursion)) - 1))
 
 
+def leakage_factor(*, squeeze_number: ArrayLike) -> Floats:
+    r"""Mean excess pressure of a film that leaks at the rim of a circular face over that at high squeeze number. []
+
+    Parameters
+    ----------
+    squeeze_number : array_like, any shape
+        Of the film, sigma. []
+
+    Returns
+    -------
+    ndarray, shape of `squeeze_number`
+        From 0 for slow vibrations to 1, which it approaches as 1 - sqrt(2/sigma).
+
+    Raises
+    ------
+    InvalidInput
+        If a number is not positive and finite.
+
+    Notes
+    -----
+    Reynolds's equation of an isothermal gas to the second order in the amplitude over the gap. With
+    :math:`\kappa = \sqrt{\mathrm{i}\sigma}` and :math:`r = I_1(\kappa)/I_0(\kappa)`
+
+    .. math::
+
+        g = \frac45 \left[ \frac32 \left( 1 - \mathrm{Re} \frac{2 r}{\kappa} \right)
+            - \frac14 \left( 1 - 2\, \mathrm{Re} \frac{2 r}{\kappa}
+            + \frac{2}{\sigma}\, \mathrm{Im}\, \kappa r \right) \right]
+
+    References
+    ----------
+    .. [1] W. E. Langlois, Q. Appl. Math. 20, 131 (1962), for the equation.
+    """
+    from scipy.special import ive
+
+    sigma = require_positive(squeeze_number=squeeze_number)
+    kappa = np.sqrt(1j * sigma)
+    r = ive(1, kappa) / ive(0, kappa)
+    mean, square = (2 * r / kappa).real, 2 * (kappa * r).imag / sigma
+    # the sum cancels to sigma^2 for slow vibrations
+    return np.asarray(np.maximum(0.8 * (1.5 * (1 - mean) - 0.25 * (1 - 2 * mean + square)), 0.0))
+
+
+def levitation_amplitude(
+    *, normal_load: ArrayLike, film_thickness: ArrayLike, face_radius: ArrayLike, ambient_pressure: ArrayLike
+) -> Floats:
+    r"""Amplitude at which a gas film of a thickness carries a load on a circular face. [m]
+
+    Parameters
+    ----------
+    normal_load : array_like, any shape
+        Force pressing the bodies together. [N]
+    film_thickness : array_like, broadcastable to `normal_load`
+        Mean thickness of the film. [m]
+    face_radius : array_like, broadcastable to `normal_load`
+        Radius of the face. [m]
+    ambient_pressure : array_like, broadcastable to `normal_load`
+        Pressure around the face. [Pa]
+
+    Returns
+    -------
+    ndarray, the broadcast shape
+        Below the thickness for any load.
+
+    Raises
+    ------
+    InvalidInput
+        If an argument is not positive.
+
+    Notes
+    -----
+    The inverse of `levitation_gap` in the limit of high squeeze number.
+    """
+    load, h = require_positive(normal_load=normal_load), require_positive(film_thickness=film_thickness)
+    R, p_a = require_positive(face_radius=face_radius), require_positive(ambient_pressure=ambient_pressure)
+    square = np.square(1 + load / (math.pi * R**2 * p_a))
+    return np.asarray(h * np.sqrt((square - 1) / (1.5 + square)))
+
+
 def levitation_gap(
     *,
     normal_load: ArrayLike,

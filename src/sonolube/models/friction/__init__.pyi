@@ -29,6 +29,13 @@ from .laws.spring_driven_slider import (
     DriveForce as DriveForce,
     spring_driven_slider_force as spring_driven_slider_force,
 )
+from .lubricant_film import (
+    FilmLubricant as FilmLubricant,
+    MixedLubrication as MixedLubrication,
+    elastohydrodynamic_thickness as elastohydrodynamic_thickness,
+    inclined_pad as inclined_pad,
+    mixed_lubrication as mixed_lubrication,
+)
 from .lubrication import (
     BoundaryLubricant as BoundaryLubricant,
     LubricationCoefficients as LubricationCoefficients,
@@ -38,6 +45,7 @@ from .lubrication import (
     best_lubrication_method as best_lubrication_method,
     hersey_number as hersey_number,
     lubrication_coefficients as lubrication_coefficients,
+    shared_coefficients as shared_coefficients,
     stribeck_coefficient as stribeck_coefficient,
 )
 from .metal_forming import (
@@ -84,6 +92,8 @@ from .models.range_check import (
     model_friction as model_friction,
     ratio_caveats as ratio_caveats,
 )
+from .models.soft_layer import SoftLayerModel as SoftLayerModel
+from .models.squeeze_film import PartialLevitation as PartialLevitation, SqueezeFilm as SqueezeFilm
 from .oscillating_contact.approximations import (
     approximate_guided_ratio as approximate_guided_ratio,
     approximate_longitudinal_ratio as approximate_longitudinal_ratio,

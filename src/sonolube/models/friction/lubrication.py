@@ -242,10 +242,52 @@ def lubrication_coefficients(
     --------
     best_lubrication_method : The method with the lowest coefficient.
     """
+    return shared_coefficients(
+        friction_coefficient=friction_coefficient,
+        friction_ratio=friction_ratio,
+        asperity_load_fraction=asperity_load_fraction(lubricant, nominal_pressure=nominal_pressure),
+        film_coefficient=lubricant.film_coefficient,
+    )
+
+
+def shared_coefficients(
+    *,
+    friction_coefficient: ArrayLike,
+    friction_ratio: ArrayLike,
+    asperity_load_fraction: ArrayLike,
+    film_coefficient: ArrayLike,
+) -> LubricationCoefficients:
+    """Coefficients of friction of the four lubrication methods, by the share of the load on asperities.
+
+    Parameters
+    ----------
+    friction_coefficient : array_like
+        Coefficient of dry friction. []
+    friction_ratio : array_like, broadcast against `friction_coefficient`
+        Dry friction with vibration over that without. []
+    asperity_load_fraction : array_like, broadcast against them
+        Share of the load on asperities that penetrate the film. []
+    film_coefficient : array_like, broadcast against them
+        Coefficient of friction of the film. []
+
+    Returns
+    -------
+    LubricationCoefficients
+
+    Raises
+    ------
+    InvalidInput
+        If the dry coefficient is not positive, or another value negative.
+
+    See Also
+    --------
+    lubrication_coefficients : With the share by the pressure, and the equations.
+    mixed_lubrication : Share and film by viscosity, speed, load and roughness.
+    """
     mu = require_positive(friction_coefficient=friction_coefficient)
     ratio = require_non_negative(friction_ratio=friction_ratio)
-    fraction = asperity_load_fraction(lubricant, nominal_pressure=nominal_pressure)
-    film = (1 - fraction) * lubricant.film_coefficient
+    fraction = require_non_negative(asperity_load_fraction=asperity_load_fraction)
+    film = (1 - fraction) * require_non_negative(film_coefficient=film_coefficient)
     coefficients = (mu, ratio * mu, fraction * mu + film, fraction * ratio * mu + film)
     return LubricationCoefficients(*np.broadcast_arrays(*coefficients))
 

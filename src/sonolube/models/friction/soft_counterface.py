@@ -92,7 +92,7 @@ def exponential_layer_ratio(
     a, length = np.broadcast_arrays(
         require_non_negative(vibration_amplitude=vibration_amplitude), require_positive(decay_length=decay_length)
     )
-    motion, area = _patches(mode)
+    motion, area = face_patches(mode)
     beta = np.multiply.outer(a / length, motion)
     largest = beta.max(axis=-1, keepdims=True)  # taken out of both sums against overflow
     load = (scaled_bessel_i0(beta) * np.exp(beta - largest)) @ area
@@ -139,18 +139,26 @@ def linear_layer_ratio(
         require_non_negative(vibration_amplitude=vibration_amplitude),
         require_positive(static_indentation=static_indentation),
     )
-    motion, area = _patches(mode)
+    motion, area = face_patches(mode)
     amplitude = np.multiply.outer(a / indentation, motion)
-    # mean indentation over that at rest: the mean force is convex in it and at least the load at 1, so that Newton's
-    # method converges monotonically
-    mean = np.ones(a.shape)
+    return np.asarray(np.maximum(balanced_indentation(amplitude, area)[..., None] - amplitude, 0.0) @ area)
+
+
+def balanced_indentation(amplitude: Floats, area: Floats) -> Floats:
+    """Mean indentation of a linear layer under a vibrating face over that at rest, at which the mean force is the load.
+
+    Amplitudes of patches over the indentation at rest, shape (..., n), and their fractions of the area, shape (n,).
+    """
+    # the mean force is convex in the indentation and at least the load at 1, so that Newton's method converges
+    # monotonically
+    mean = np.ones(amplitude.shape[:-1])
     for _ in range(60):
-        force, contact_fraction = _mean_force(mean[..., None], amplitude)
+        force, contact_fraction = mean_force(mean[..., None], amplitude)
         mean = mean - (force @ area - 1) / (contact_fraction @ area)
-    return np.asarray(np.maximum(mean[..., None] - amplitude, 0.0) @ area)
+    return mean
 
 
-def _patches(mode: FaceVibrationMode) -> tuple[Floats, Floats]:
+def face_patches(mode: FaceVibrationMode) -> tuple[Floats, Floats]:
     """Relative amplitudes of patches over that of the centre, and their fractions of the area."""
     rim = mode.rim_displacement_ratio
     followed = mode.following_fraction * (1 + rim) / 2
@@ -163,7 +171,7 @@ def _patches(mode: FaceVibrationMode) -> tuple[Floats, Floats]:
     return np.abs(np.concatenate(amplitudes)), np.concatenate([part * weight / 2 for part in parts])
 
 
-def _mean_force(mean: Floats, amplitude: Floats) -> tuple[Floats, Floats]:
+def mean_force(mean: Floats, amplitude: Floats) -> tuple[Floats, Floats]:
     """Mean of max(mean - amplitude cos, 0) over a period, and the fraction of it with a positive value."""
     quotient = np.ones(np.broadcast_shapes(mean.shape, amplitude.shape))
     c = np.clip(np.divide(mean, amplitude, out=quotient, where=amplitude > 0), -1, 1)

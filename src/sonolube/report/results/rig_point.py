@@ -111,6 +111,9 @@ def _near(own: Sequence[float], printed: Sequence[float]) -> bool:
 _QUANTITIES: Final = ("vibration_amplitude", "sliding_speed", "nominal_pressure", "asperity_load_fraction")
 
 
+_FILM: Final = ("film_thickness", "film_ratio", "film_coefficient")
+
+
 def method_rows(result: LubricationPoint) -> list[list[str]]:
     """Coefficient of friction of each method, the best marked."""
     return [
@@ -123,10 +126,21 @@ def regime_rows(result: LubricationPoint, wear: WearMechanismAssessment | None) 
     """Load on asperities, friction model, amplitude, and the kind of wear."""
     return [
         ("on asperities", f"{100 * result.asperity_load_fraction:.3g} % of the load through the lubricant"),
+        *([] if result.film_ratio is None else [("film", _film_text(result))]),
         ("friction model", result.friction_model),
         ("amplitude", f"{format_si(result.vibration_amplitude, 'm')}: {result.amplitude_origin}"),
         *([] if wear is None else _wear_rows(wear)),
     ]
+
+
+def _film_text(result: LubricationPoint) -> str:
+    """Thickness of the film, its ratio to the roughness with the regime of that name, and its coefficient."""
+    ratio, share = result.film_ratio or 0.0, result.asperity_load_fraction
+    regime = "boundary" if share > 0.9 else "mixed" if share > 0.1 else "full film"  # by the load, not by the ratio
+    thickness = format_si(result.film_thickness or 0.0, "m")
+    return (
+        f"{thickness}, {ratio:.3g} times the rms height ({regime}), with a coefficient of {result.film_coefficient:.3g}"
+    )
 
 
 def regime_object(result: LubricationPoint, wear: WearMechanismAssessment | None) -> dict[str, Any]:
@@ -135,6 +149,7 @@ def regime_object(result: LubricationPoint, wear: WearMechanismAssessment | None
     return {
         **picked(result, "best", "friction_model", "amplitude_source", "amplitude_origin"),
         **si(picked(result, *_QUANTITIES)),
+        **({} if result.film_ratio is None else si(picked(result, *_FILM))),
         "friction_coefficient": si({name: float(value) for name, value in methods.items()}, unit=""),
         **({} if wear is None else {"wear": _wear_object(wear)}),
     }

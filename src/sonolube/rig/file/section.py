@@ -67,6 +67,8 @@ LIMITS: Mapping[str, tuple[float, float]] = MappingProxyType(
         "m/V": (1e-18, 1e-2),
         "N/m": (1e-6, 1e15),
         "N s/m": (1e-9, 1e12),
+        "kg/m3": (1e-3, 1e5),
+        "Pa s": (1e-9, 1e6),
         "W": (1e-12, 1e6),
         "W/K": (1e-9, 1e6),
         "J/K": (1e-9, 1e9),

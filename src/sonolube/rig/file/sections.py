@@ -1,12 +1,13 @@
 """Sections of a rig file: tables and keys, with the checks between keys."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import Field, create_model, field_validator, model_validator
 
 from sonolube.checks import require_non_negative, require_positive
-from sonolube.errors import InvalidInput
+from sonolube.errors import InvalidInput, UnknownName
+from sonolube.facts.materials import material
 from sonolube.models.actuator import PiezoStack
 from sonolube.models.actuator.drive import Drive
 from sonolube.models.dynamics.waveform import sampled_waveform
@@ -253,6 +254,13 @@ class RigFile(Section):
                 raise ValueError(f'put the whole key in quotes, such as "{key}.{inner}" = "normal 3 %"')
         return table
 
+    @model_validator(mode="before")
+    @classmethod
+    def _soft_layer_by_default(cls, content: object) -> object:
+        if not isinstance(content, dict) or not _names_soft_layer(content):
+            return content
+        return content | {"friction": {**content["friction"], "model": "soft_layer"}}
+
     @model_validator(mode="after")
     def _source_of_vibration(self) -> Self:
         per_volt = self.actuator is not None and self.actuator.amplitude_per_volt is not None
@@ -313,3 +321,29 @@ class RigFile(Section):
         if self.structure is not None and (self.drive is None or self.drive.voltage_peak_to_peak is None):
             raise ValueError("the table structure needs drive.frequency and drive.voltage_peak_to_peak")
         return self
+
+
+_SOFT_LAYERS = frozenset({"felt", "webbing"})  # families whose friction under vibration is that of a soft layer, D 4.4
+
+
+def _names_soft_layer(content: dict[str, Any]) -> bool:
+    """Whether a file without a friction model has a layer thickness, or felt as a body with a stiffness of its own."""
+    friction, contact = content.get("friction"), content.get("contact")
+    if not isinstance(friction, dict) or not isinstance(contact, dict) or "model" in friction:
+        return False
+    if "layer_thickness" in friction:
+        return True
+    bodies = (contact.get(name) for name in ("softer", "harder"))
+    names = {str(body["material"]) for body in bodies if isinstance(body, dict) and "material" in body}
+    is_own = "normal_stiffness" in contact or (
+        "decay_length" in contact and contact.get("decay_length_origin") != "published_tests"
+    )
+    return is_own and any(_family(name) in _SOFT_LAYERS for name in names)
+
+
+def _family(name: str) -> str:
+    """Family of a material; empty for an unknown one, which its own section refuses."""
+    try:
+        return material(name).family
+    except UnknownName:
+        return ""

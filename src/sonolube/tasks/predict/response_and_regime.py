@@ -1,14 +1,14 @@
 """Tasks `response`, `transient` and `regime`: linear response, start-up from rest, and lubrication regime of a rig."""
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any, Literal, Unpack
+from typing import Annotated, Any, Literal, TypeAlias, Unpack
 
 from sonolube import rig as rigs
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.facts.materials import material
 from sonolube.models.dynamics import modes
-from sonolube.models.friction import BoundaryLubricant
+from sonolube.models.friction import BoundaryLubricant, FilmLubricant
 from sonolube.models.wear import WearMechanismAssessment
 from sonolube.report import Drawing
 from sonolube.report.results import rig_point as results
@@ -178,8 +178,22 @@ class StartUpAnswer(Answer):
         return {f"{self.rig.name}-transient.nc": start_up_arrays(self.rig, self.result)}
 
 
-_FILM = Quantity("Coefficient of friction of the lubricant film.", "", kind="NUMBER")
-_PRESSURE = Quantity("Pressure at which asperities carry all the load.", "Pa")
+_FILM = Quantity("Coefficient of friction of the lubricant film, where it is known.", "", kind="NUMBER")
+_PRESSURE = Quantity("Pressure at which asperities carry all the load, with it.", "Pa")
+_VISCOSITY = Quantity(
+    "Dynamic viscosity of the lubricant, such as '0.1 Pa s', by which film and asperities share the load.",
+    "Pa s",
+    kind="VISCOSITY",
+)
+_BALL = Quantity("Radius of the pin's ball, whose film is elastohydrodynamic; without it a flat, inclined pad.", "m")
+_INLET = Quantity(
+    "Gap at the inlet of a flat pad over that at its outlet; by default the best, 2.2.", "inlet_ratio", kind="RATIO"
+)
+_BARUS = Quantity(
+    "Growth of the viscosity with pressure, for a ball; by default that of mineral oils, 2e-8 /Pa.",
+    "1/Pa",
+    kind="COEFFICIENT",
+)
 _GAIN = Quantity("Least reduction of a lubricant's friction that is worth the power of vibration.", "", kind="SHARE")
 
 
@@ -187,8 +201,12 @@ _GAIN = Quantity("Least reduction of a lubricant's friction that is worth the po
 def regime(
     rig: RigFile,
     *,
-    film_coefficient: Annotated[Number, _FILM],
-    asperity_pressure: Annotated[Number, _PRESSURE],
+    film_coefficient: Annotated[Number | None, _FILM] = None,
+    asperity_pressure: Annotated[Number | None, _PRESSURE] = None,
+    viscosity: Annotated[Number | None, _VISCOSITY] = None,
+    tip_radius: Annotated[Number | None, _BALL] = None,
+    inlet_ratio: Annotated[Number | None, _INLET] = None,
+    pressure_viscosity: Annotated[Number | None, _BARUS] = None,
     smallest_gain: Annotated[Number, _GAIN] = "0",
     pin: Annotated[str | None, Parameter("Material of the pin, for its wear.", "MATERIAL")] = None,
     disc: Annotated[str | None, Parameter("Material of the disc, for its wear.", "MATERIAL")] = None,
@@ -208,10 +226,14 @@ def regime(
     if (pin is None) != (disc is None):
         raise InvalidInput(f"{shown('pin')} and {shown('disc')} belong together: give both or neither")
     known = rig_of(rig)
-    lubricant = BoundaryLubricant(
-        film_coefficient=plausible("film_coefficient", film_coefficient),
-        full_asperity_pressure=plausible("asperity_pressure", asperity_pressure),
-    )
+    stated = {"film_coefficient": film_coefficient, "asperity_pressure": asperity_pressure}
+    viscous = {
+        "dynamic_viscosity": ("viscosity", viscosity),
+        "tip_radius": ("tip_radius", tip_radius),
+        "inlet_ratio": ("inlet_ratio", inlet_ratio),
+        "pressure_viscosity": ("pressure_viscosity", pressure_viscosity),
+    }
+    lubricant = _stated_lubricant(stated, viscous) if viscosity is None else _viscous_lubricant(stated, viscous)
     gain = in_si("smallest_gain", smallest_gain)
     return RegimeAnswer(
         rig=known,
@@ -219,6 +241,42 @@ def regime(
         wear=rigs.wear_of_materials(material(pin), material(disc)) if pin is not None and disc is not None else None,
         surroundings=rigs.lubrication_map(known, lubricant=lubricant, smallest_gain=gain),
     )
+
+
+_Viscous: TypeAlias = "Mapping[str, tuple[str, Number | None]]"  # argument and value, by the name of the lubricant's
+
+
+def _stated_lubricant(stated: "Mapping[str, Number | None]", viscous: _Viscous) -> BoundaryLubricant:
+    """Lubricant whose film is stated."""
+    film, pressure = stated.values()
+    if film is None or pressure is None:
+        raise InvalidInput(f"give {shown('viscosity')}, or both {' and '.join(map(shown, stated))}")
+    _refuse_needless(viscous, tuple(viscous), f"belongs to {shown('viscosity')}: leave it out, or give that")
+    return BoundaryLubricant(
+        film_coefficient=plausible("film_coefficient", film),
+        full_asperity_pressure=plausible("asperity_pressure", pressure),
+    )
+
+
+def _viscous_lubricant(stated: "Mapping[str, Number | None]", viscous: _Viscous) -> FilmLubricant:
+    """Lubricant whose film follows from its viscosity."""
+    if any(value is not None for value in stated.values()):
+        raise InvalidInput(f"{shown('viscosity')} gives the film: leave out {' and '.join(map(shown, stated))}")
+    if viscous["tip_radius"][1] is None:
+        _refuse_needless(viscous, ("pressure_viscosity",), f"is of a ball: leave it out, or give {shown('tip_radius')}")
+    else:
+        _refuse_needless(viscous, ("inlet_ratio",), f"is of a flat pad: leave out it or {shown('tip_radius')}")
+    return FilmLubricant(
+        **{name: plausible(argument, value) for name, (argument, value) in viscous.items() if value is not None}
+    )
+
+
+def _refuse_needless(viscous: _Viscous, names: Sequence[str], why: str) -> None:
+    """Refuse an argument that nothing takes."""
+    for name in names:
+        argument, value = viscous[name]
+        if value is not None:
+            raise InvalidInput(f"{shown(argument)} {why}", key=argument)
 
 
 @answer

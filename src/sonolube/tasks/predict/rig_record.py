@@ -20,7 +20,7 @@ from sonolube.rig.datasets import LabelledArrays, result_quantities, result_text
 from sonolube.rig.figures import simulation_chart, temperature_chart
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.rig.responses import simulation_arrays
-from sonolube.rig.simulation import friction_model_named
+from sonolube.rig.simulation import friction_model_named, mechanism_text
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer, si
 from sonolube.tasks.parameters import Interval, Number, Parameter, Quantity, RestingRig, RigFile, Watched, rig_of
 from sonolube.tasks.progress import stage
@@ -170,13 +170,14 @@ def friction(
     result = friction_point(resolved, model=model)
     by = known.friction_model if model is None else friction_model_named(known, model)
     beyond = beyond_the_model(resolved, by, interval=interval)
+    mechanism = mechanism_text(resolved.with_friction_model(by)) if result.reason is None else ""
     return RigRecord(
         rig=known,
         result=result,
         measured=measured_on(known, vibration_amplitude=result.vibration_amplitude),
         leading=large_amplitude_caveats(resolved, vibration_amplitude=result.vibration_amplitude),
-        rows=beyond.rows(),
-        entries=beyond.object(),
+        rows=[*([("mechanism", mechanism)] if mechanism else []), *beyond.rows()],
+        entries=({"mechanism": mechanism} if mechanism else {}) | beyond.object(),
     )
 
 

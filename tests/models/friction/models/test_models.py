@@ -36,6 +36,7 @@ LOAD, FREQUENCY, DECAY_LENGTH = 3.0, 22e3, 2e-6
 OMEGA = 2 * np.pi * FREQUENCY
 AT_REST = float(separation(CONTACT, normal_load=LOAD))
 SPEEDS = np.array([20.3e-3, 40.6e-3, 87e-3])  # of D Table 2.3
+HARD_MODELS = [name for name, model in FRICTION_MODELS.items() if not model.for_soft_bodies]
 
 
 def sine(amplitude: float, *, samples: int = 256) -> ContactMotion:
@@ -107,12 +108,12 @@ def test_the_half_period_model_is_the_closed_form_of_the_cube_at_every_speed() -
         )
 
 
-@pytest.mark.parametrize("name", FRICTION_MODELS)
+@pytest.mark.parametrize("name", HARD_MODELS)
 def test_without_vibration_every_model_gives_a_ratio_of_one(name: str) -> None:
     assert model_ratio(name, sine(0.0), SPEEDS) == approx([1, 1, 1], rel=1e-9)
 
 
-@pytest.mark.parametrize("name", FRICTION_MODELS)
+@pytest.mark.parametrize("name", HARD_MODELS)
 def test_results_have_the_shape_of_the_speeds_and_are_independent(name: str) -> None:
     motion, speeds = load_balanced_motion(CONTACT, sine(2.5e-6)), SPEEDS[:, np.newaxis] * [1.0, 2.0]
     together = model_ratio(name, motion, speeds)
@@ -120,7 +121,7 @@ def test_results_have_the_shape_of_the_speeds_and_are_independent(name: str) -> 
     assert model_ratio(name, motion, speeds[1, 1]) == approx(together[1, 1], rel=1e-4)
 
 
-@pytest.mark.parametrize("name", FRICTION_MODELS)
+@pytest.mark.parametrize("name", HARD_MODELS)
 def test_the_start_of_the_period_has_no_effect(name: str) -> None:
     motion = load_balanced_motion(CONTACT, sine(2.5e-6))
     later = ContactMotion(

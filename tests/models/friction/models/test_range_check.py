@@ -20,6 +20,7 @@ from sonolube.rig import read_rig
 
 CONTACT = read_rig("examples/rigs/tribometer.toml").contact
 CLOSE = read_rig("examples/rigs/welder_flat.toml").contact  # 8.2 um of gap under 70 N
+HARD_MODELS = [name for name, model in FRICTION_MODELS.items() if not model.for_soft_bodies]
 
 
 def moving(contact: RoughContact, *, load: float, amplitude: float) -> ContactMotion:
@@ -54,7 +55,7 @@ def test_a_mean_normal_force_above_the_load_permits_as_much_friction() -> None:
     assert (found.reason == "").tolist() == [True, False]
 
 
-@pytest.mark.parametrize("name", FRICTION_MODELS)
+@pytest.mark.parametrize("name", HARD_MODELS)
 @pytest.mark.parametrize("amplitude", [0.2e-6, 1e-6, 4e-6])
 def test_what_passes_is_below_mu_times_the_mean_normal_force(name: str, amplitude: float) -> None:
     motion = moving(CONTACT, load=3.0, amplitude=amplitude)
@@ -79,8 +80,10 @@ def test_the_formula_as_printed_stands_beside_the_withheld_ratio() -> None:
 
 def test_a_vibration_through_the_mean_planes_is_outside_every_model_that_needs_a_gap() -> None:
     motion = moving(CLOSE, load=70.0, amplitude=11.46e-6)
-    for name, model in FRICTION_MODELS.items():
-        found = model_friction(model(), CLOSE, motion, sliding_speed=[0.05, 0.1], friction_coefficient=0.3)
+    for name in HARD_MODELS:
+        found = model_friction(
+            FRICTION_MODELS[name](), CLOSE, motion, sliding_speed=[0.05, 0.1], friction_coefficient=0.3
+        )
         assert (found.reason == "").all() == (name in {"coulomb", "kinematic"}), name
         assert np.isnan(found.friction_ratio).all() == (name not in {"coulomb", "kinematic"}), name
 

@@ -15,6 +15,8 @@ FRICTION_MODELS: VariantTable[type[FrictionModel]] = VariantTable(
         "dong_2015_full_period": "sonolube.models.friction.models.dong_2015:Dong2015FullPeriod",
         "dong_2015_half_period": "sonolube.models.friction.models.dong_2015:Dong2015HalfPeriod",
         "dong_2015_load_balanced": "sonolube.models.friction.models.dong_2015:Dong2015LoadBalanced",
+        "soft_layer": "sonolube.models.friction.models.soft_layer:SoftLayerModel",
+        "squeeze_film": "sonolube.models.friction.models.squeeze_film:SqueezeFilm",
     },
 )
 """Friction models by name; a new model takes its file and one line here."""

@@ -116,6 +116,10 @@ class FrictionModel(ABC):
         Whether the model loses its meaning where the mean planes meet within the period.
     directions : frozenset of str
         Directions of vibration in which friction changes by the model: "normal", "along" and "across".
+    for_soft_bodies : bool
+        Whether it is of soft or floating bodies, beside which models of hard rough contacts tell nothing.
+    tested : str
+        How far the model was tested, as a caveat of its results; empty where comparisons with published tests say it.
     range_note : str
         Why a ratio beyond `ratio_bounds` has no meaning in the model, and advice.
     """
@@ -128,6 +132,8 @@ class FrictionModel(ABC):
     rate_dependent: ClassVar[bool] = True
     needs_open_gap: ClassVar[bool] = True
     directions: ClassVar[frozenset[str]] = frozenset({"normal"})
+    for_soft_bodies: ClassVar[bool] = False
+    tested: ClassVar[str] = ""
     range_note: ClassVar[str] = (
         "no contact transmits more than the friction coefficient times its normal force; the parameters of the model"
         " do not hold for this motion"
@@ -203,6 +209,20 @@ class FrictionModel(ABC):
     @abstractmethod
     def _ratios(self, contact: RoughContact, motion: ContactMotion, v_r: Floats, mu: ArrayLike | None) -> Floats:
         """Ratio at positive speeds, shape (n,)."""
+
+    def mechanism(self, contact: RoughContact, motion: ContactMotion) -> str:
+        """What the model makes of a motion besides the ratio, in one line with its numbers; empty where nothing.
+
+        Parameters
+        ----------
+        contact : RoughContact
+        motion : ContactMotion
+
+        Returns
+        -------
+        str
+        """
+        return ""
 
     def ratio_bounds(self, *, mean_force_ratio: Floats) -> tuple[Floats, Floats]:
         r"""Lowest and the highest friction ratio that the model can mean. []
