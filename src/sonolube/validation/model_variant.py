@@ -88,10 +88,7 @@ def _parameters() -> dict[str, FreeParameter]:
 
 _PARAMETERS: Final = _parameters()
 MEMORY_LENGTH: Final[FreeParameter] = _PARAMETERS["memory_length"]
-IN_PLANE_MOTION: Final[tuple[FreeParameter, FreeParameter]] = (
-    _PARAMETERS["in_plane_fraction"],
-    _PARAMETERS["in_plane_phase"],
-)
+IN_PLANE_MOTION: Final = _PARAMETERS["in_plane_fraction"], _PARAMETERS["in_plane_phase"]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -126,10 +123,7 @@ _COLUMNS = tuple(field.name for field in fields(ConditionColumns) if field.name 
 
 
 def condition_columns(conditions: Sequence[object]) -> ConditionColumns | None:
-    """Inputs of conditions as arrays.
-
-    None where the conditions are on different contacts.
-    """
+    """Inputs of conditions as arrays; None where the conditions are on different contacts."""
     contact: Any = getattr(conditions[0], "contact", None)
     if any(getattr(one, "contact", None) is not contact for one in conditions):
         return None
