@@ -157,8 +157,8 @@ def mean_wear(
     """
     if resolved.rig.direction.is_in_plane:
         return float("nan"), (
-            f"{OUTSIDE_MODEL_RANGE}: the vibration is {resolved.rig.direction.text}, and the wear models are of vibration"
-            " along the normal; take its friction alone, or leave vibration.direction out"
+            f"{OUTSIDE_MODEL_RANGE}: the vibration is {resolved.rig.direction.text}, and the wear models are of"
+            " vibration along the normal; take its friction alone, or leave vibration.direction out"
         )
     ratio, smallest = _raw_wear_ratio(resolved, motions, wear_model, vibration_amplitude)
     if resolved.rig.friction_model.for_soft_bodies:
