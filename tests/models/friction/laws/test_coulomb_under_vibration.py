@@ -60,10 +60,7 @@ def test_a_turning_ring_has_the_mean_of_its_places(sliding: float, vibration: fl
     places = (np.arange(4000) + 0.5) * np.pi / 8000
     each = oblique_vibration_ratio(sliding_speed=sliding, vibration_velocity=vibration, vibration_direction=places)
     ring = float(torsional_vibration_ratio(sliding_speed=sliding, vibration_velocity=vibration))
-    along = float(parallel_vibration_ratio(sliding_speed=sliding, vibration_velocity=vibration))
-    across = float(transverse_vibration_ratio(sliding_speed=sliding, vibration_velocity=vibration))
     assert ring == approx(float(each.mean()), abs=1e-5)
-    assert min(along, across) - 1e-12 <= ring <= max(along, across) + 1e-12
 
 
 @given(sliding=speeds, vibration=speeds, angle=angles)
