@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import sonolube as sl
 from sonolube.models.friction import (
     drawing_stress,
     feed_contact_fraction,
@@ -16,6 +17,7 @@ from sonolube.models.friction import (
 )
 from sonolube.rig import friction_point, read_rig
 
+PAGE = Path(__file__).parents[1] / "docs" / "applications.md"
 EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("*.py"))
 
 
@@ -71,8 +73,7 @@ def test_the_tool_cuts_always_above_its_critical_speed_only(tmp_path: Path) -> N
 
 def row_of_the_page(first: str) -> list[float]:
     """Numbers in a row of a table on the page of worked cases."""
-    page = (Path(__file__).parents[1] / "docs" / "applications.md").read_text(encoding="utf-8")
-    (row,) = re.findall(rf"^\| {first} \|(.*)$", page, flags=re.MULTILINE)
+    (row,) = re.findall(rf"^\| {first} \|(.*)$", PAGE.read_text(encoding="utf-8"), flags=re.MULTILINE)
     return [float(number) for number in re.findall(r"(\d+(?:\.\d+)?) (?:%|m/s)", row)]
 
 
@@ -159,3 +160,11 @@ def test_the_belt_vibrates_as_the_collar_does() -> None:
     rigs = Path(__file__).parents[1] / "examples" / "rigs"
     belt, collar = (friction_point(read_rig(rigs / f"{name}.toml")) for name in ("webbing_on_ring", "collar"))
     assert belt.vibration_amplitude == pytest.approx(collar.vibration_amplitude, rel=2e-3)
+
+
+def test_the_gaps_under_the_finger_are_those_of_the_page() -> None:
+    rig = Path(__file__).parents[1] / "examples" / "rigs" / "finger_on_glass.toml"
+    (printed,) = re.findall(r"^\| Mean gap \|(.*)$", PAGE.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    for gap, size in zip(re.findall(r"[\d.]+", printed), (0.1, 0.25, 0.5, 1, 1.5, 2.5), strict=True):
+        text = sl.friction(read_rig(rig, changes=[f"{AMPLITUDE}={size}um"])).object()["mechanism"]
+        assert float(gap) == pytest.approx(float(re.findall(r"gap of ([\d.]+) um", text)[0]), abs=0.051)
