@@ -8,8 +8,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sonolube.models.friction import drawing_stress, tool_contact_fraction, vibrated_drawing_stress
+import sonolube as sl
+from sonolube.models.friction import (
+    drawing_stress,
+    feed_contact_fraction,
+    tool_contact_fraction,
+    vibrated_drawing_stress,
+)
+from sonolube.rig import friction_point, read_rig
 
+PAGE = Path(__file__).parents[1] / "docs" / "applications.md"
 EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("*.py"))
 
 
@@ -65,8 +73,7 @@ def test_the_tool_cuts_always_above_its_critical_speed_only(tmp_path: Path) -> N
 
 def row_of_the_page(first: str) -> list[float]:
     """Numbers in a row of a table on the page of worked cases."""
-    page = (Path(__file__).parents[1] / "docs" / "applications.md").read_text(encoding="utf-8")
-    (row,) = re.findall(rf"^\| {first} \|(.*)$", page, flags=re.MULTILINE)
+    (row,) = re.findall(rf"^\| {first} \|(.*)$", PAGE.read_text(encoding="utf-8"), flags=re.MULTILINE)
     return [float(number) for number in re.findall(r"(\d+(?:\.\d+)?) (?:%|m/s)", row)]
 
 
@@ -88,3 +95,76 @@ def test_the_turning_table_of_the_page_is_computed(micrometres: int) -> None:
         cutting_speed=[0.1, 0.5, 1.0], vibration_velocity=2 * np.pi * 20e3 * micrometres * 1e-6
     )
     assert shares == (100 * found).round().tolist()
+
+
+def test_the_drill_cuts_with_interruptions_and_its_flank_presses_under_ultrasound(tmp_path: Path) -> None:
+    lines = run(next(path for path in EXAMPLES if path.stem == "vibrated_drilling"), tmp_path)
+    assert "cuts for  71 %   1.4 deg, flank clear" in lines[0]  # 1 - arccos(50/80)/pi; 40 um, 50 Hz, 0.52 m/s
+    assert "cuts for 100 %  67.4 deg, flank presses" in lines[1]
+
+
+@pytest.mark.parametrize("waves", [1.5, 1.25, 1.1])
+def test_the_drilling_table_of_the_page_is_computed(waves: float) -> None:
+    found = feed_contact_fraction(
+        feed_per_edge=1.0, vibration_amplitude=[0.5, 0.6, 0.8, 1.0, 2.0], phase_per_edge=2 * np.pi * waves
+    )
+    assert row_of_the_page(f"{waves} waves") == (100 * found).round().tolist()
+
+
+SPEED, AMPLITUDE = "sliding.sliding_speed", "vibration.vibration_amplitude"
+MODULUS, FOLLOWING = "contact.softer.youngs_modulus", "friction.following_fraction"
+
+
+def reductions(name: str, key: str, values: list[str], *changes: str) -> list[float]:
+    """Friction reductions of an example rig over one entry, rounded. [%]"""
+    rig = Path(__file__).parents[1] / "examples" / "rigs" / f"{name}.toml"
+    points = (friction_point(read_rig(rig, changes=[*changes, f"{key}={value}"])) for value in values)
+    return [round(100 * point.friction_reduction) for point in points]
+
+
+@pytest.mark.parametrize("amplitude", ["0.1", "0.2", "0.5", "1"])
+def test_the_table_of_the_guide_is_computed(amplitude: str) -> None:
+    found = reductions("pom_on_steel", SPEED, [f"{v}mm/s" for v in (1, 5, 20, 50, 100)], f"{AMPLITUDE}={amplitude}um")
+    assert row_of_the_page(f"POM, {amplitude} µm") == found
+
+
+@pytest.mark.parametrize(
+    ("amplitude", "modulus"), [("1", "30"), ("2.17", "30"), ("4", "30"), ("2.17", "100"), ("2.17", "10")]
+)
+def test_the_table_of_the_belt_is_computed(amplitude: str, modulus: str) -> None:
+    changes = (f"{AMPLITUDE}={amplitude}um", f"{MODULUS}={modulus}MPa")
+    found = reductions("webbing_on_ring", SPEED, [f"{v}mm/s" for v in (5, 20, 50, 100, 200)], *changes)
+    assert row_of_the_page(f"Belt, {amplitude} µm, {modulus} MPa") == found
+
+
+@pytest.mark.parametrize(("row", "following"), [("nothing", 0), ("a half", 0.5), ("0.8", 0.8)])
+def test_the_table_of_the_finger_is_computed(row: str, following: float) -> None:
+    sizes = [f"{a}um" for a in (0.1, 0.25, 0.5, 1, 1.5, 2.5)]
+    found = reductions("finger_on_glass", AMPLITUDE, sizes, f"{FOLLOWING}={following}")
+    assert row_of_the_page(f"Finger follows {row}") == found
+
+
+def test_what_the_page_says_of_the_belt_and_the_finger_beyond_their_tables() -> None:
+    assert reductions("webbing_on_ring", "contact.normal_load", ["670N"]) == [1]  # D 1.3.1: up to 60 % up to 670 N
+    assert reductions("webbing_on_ring", FOLLOWING, ["0.25", "0.5"]) == [19, 4]
+    assert reductions("webbing_on_ring", MODULUS, ["3MPa"]) == [96]
+    one = f"{AMPLITUDE}=1um"
+    thin = ["101325Pa", "50662Pa", "2026Pa"]
+    assert reductions("finger_on_glass", "friction.ambient_pressure", thin, one) == [62, 40, 2]
+    assert reductions("finger_on_glass", "contact.decay_length", ["0.75um", "3um"], one) == [98, 13]
+    assert reductions("finger_on_glass", "contact.normal_load", ["0.1N", "2N"], f"{AMPLITUDE}=0.5um") == [45, 19]
+    assert reductions("pom_on_steel", "friction.friction_coefficient", ["0.1", "0.35"]) == [6, 57]
+
+
+def test_the_belt_vibrates_as_the_collar_does() -> None:
+    rigs = Path(__file__).parents[1] / "examples" / "rigs"
+    belt, collar = (friction_point(read_rig(rigs / f"{name}.toml")) for name in ("webbing_on_ring", "collar"))
+    assert belt.vibration_amplitude == pytest.approx(collar.vibration_amplitude, rel=2e-3)
+
+
+def test_the_gaps_under_the_finger_are_those_of_the_page() -> None:
+    rig = Path(__file__).parents[1] / "examples" / "rigs" / "finger_on_glass.toml"
+    (printed,) = re.findall(r"^\| Mean gap \|(.*)$", PAGE.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    for gap, size in zip(re.findall(r"[\d.]+", printed), (0.1, 0.25, 0.5, 1, 1.5, 2.5), strict=True):
+        text = sl.friction(read_rig(rig, changes=[f"{AMPLITUDE}={size}um"])).object()["mechanism"]
+        assert float(gap) == pytest.approx(float(re.findall(r"gap of ([\d.]+) um", text)[0]), abs=0.051)

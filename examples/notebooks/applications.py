@@ -1,12 +1,12 @@
-"""Notebook of three applications: a wire-drawing die, a turning tool and a bronze bush."""
+"""Notebook of applications: die, turning tool, drill, bronze bush, guide, belt and fingertip."""
 
 # %% [markdown]
-# # Wire drawing, turning and a bronze bush
+# # Forming, machining, bearings, guides, belts and fingertips
 #
-# Three machines in which something slides and may be vibrated. The first two vibrate
-# along the sliding and have closed forms; the third vibrates along the normal and is a
-# rig file. None is compared with an experiment of its own here: the page *Applications*
-# says how far each was tested.
+# Machines in which something slides and may be vibrated. Die, turning tool and drill
+# vibrate within the plane or along the feed and have closed forms; bush, guide, belt and
+# fingertip vibrate along the normal and are rig files. None is compared with an
+# experiment of its own here: the page *Applications* says how far each was tested.
 
 # %%
 import matplotlib.pyplot as plt
@@ -17,6 +17,7 @@ from sonolube.facts.materials import material
 from sonolube.facts.metrics import peak_vibration_velocity
 from sonolube.figure import LINES, publication_style, shown_in_notebooks
 from sonolube.models import friction
+from sonolube.rig import friction_point
 
 # %% [markdown]
 # ## A die that vibrates along the wire
@@ -102,6 +103,46 @@ shown_in_notebooks(figure)
 # and the spindle's power with it. The rest of the power comes from the actuator: the
 # work on a length of chip is what it was.
 #
+# ## A drill that vibrates along its axis
+#
+# An edge leaves the work only where an edge before it has cut deeper, which takes an
+# amplitude above half of the feed per edge, and depends on how many waves lie between
+# one edge and the next.
+
+# %%
+amplitudes = np.linspace(0, 2, 401)
+with publication_style():
+    figure, axes = plt.subplots(figsize=(4.4, 3))
+    for line, waves in zip(LINES, (1.5, 1.25, 1.1), strict=False):
+        part = friction.feed_contact_fraction(
+            feed_per_edge=1.0,
+            vibration_amplitude=amplitudes,
+            phase_per_edge=2 * np.pi * waves,
+        )
+        axes.plot(amplitudes, part, linestyle=line, label=f"{waves}")
+        print(
+            f"{waves:4} waves per edge   {part[100]:4.0%} at half of the feed per edge"
+        )
+        print(f"                      {part[200]:4.0%} at one, {part[-1]:4.0%} at two")
+    axes.set(xlabel="Amplitude over feed per edge [-]", ylim=(0, 1.05))
+    axes.set_ylabel("Part of the time in contact [-]")
+    axes.legend(title="Waves per edge")
+shown_in_notebooks(figure)
+
+# %% [markdown]
+# The chip is on average as thick as without vibration. An ultrasonic drill mostly does
+# not do this at all: its flank presses on the work.
+
+# %%
+drill = np.pi * 10e-3 * 1000 / 60
+for frequency, amplitude in ((50, 40e-6), (20e3, 10e-6)):
+    upward = peak_vibration_velocity(frequency=frequency, vibration_amplitude=amplitude)
+    steepest = np.degrees(np.arctan(upward / drill))
+    print(f"{frequency:5.0f} Hz   the edge moves up to {steepest:4.1f}° off its cut")
+
+# %% [markdown]
+# A clearance angle is about 10°.
+#
 # ## A bronze bush
 #
 # A bush of 10 mm by 10 mm under 50 N on a ground shaft, vibrated by 2 µm along the load.
@@ -122,3 +163,100 @@ sl.plot(dry)
 
 # %%
 sl.regime(rig, film_coefficient=0.16, asperity_pressure="10MPa")
+
+# %% [markdown]
+# ## A plastic pad of a guide
+#
+# A pad of POM on a steel rail, as of a seat rail or a linear guide. The plastic is the
+# spring: it bounces on its own elasticity, and slow sliding gains most.
+
+
+# %%
+def ratio(name, **changes):
+    """Friction ratio of a rig with some of its entries changed."""
+    keys = {
+        "speed": "sliding.sliding_speed",
+        "amplitude": "vibration.vibration_amplitude",
+        "modulus": "contact.softer.youngs_modulus",
+        "following": "friction.following_fraction",
+    }
+    changed = [f"{keys[key]}={value}" for key, value in changes.items()]
+    return friction_point(
+        sl.read_rig(f"../rigs/{name}.toml", changes=changed)
+    ).friction_ratio
+
+
+def line_over(name, key, values, unit, **changes):
+    """Friction ratio over one entry."""
+    return [ratio(name, **{key: f"{each}{unit}"}, **changes) for each in values]
+
+
+speeds, sizes = np.geomspace(1, 200, 40), np.linspace(0.005, 1, 40)
+with publication_style():
+    figure, (left, right) = plt.subplots(
+        1, 2, figsize=(6.6, 2.9), sharey=True, layout="constrained"
+    )
+    for line, size in zip(LINES, (0.1, 0.2, 0.5), strict=False):
+        over = line_over("pom_on_steel", "speed", speeds, "mm/s", amplitude=f"{size}um")
+        left.semilogx(speeds, over, linestyle=line, label=f"{size} µm")
+    for line, speed in zip(LINES, (1, 20, 50), strict=False):
+        over = line_over("pom_on_steel", "amplitude", sizes, "um", speed=f"{speed}mm/s")
+        right.plot(sizes, over, linestyle=line, label=f"{speed} mm/s")
+    left.set(xlabel="Sliding speed [mm/s]", ylabel="Friction ratio [-]", ylim=(0, 1.05))
+    right.set(xlabel="Vibration amplitude [µm]")
+    left.legend(title="20 kHz")
+    right.legend(title="20 kHz", loc="lower right", bbox_to_anchor=(1, 0.05))
+shown_in_notebooks(figure)
+
+# %%
+sl.friction("../rigs/pom_on_steel.toml")
+
+# %% [markdown]
+# ## A belt over a ring
+#
+# Polyester webbing over a ring that vibrates as the collar of the dissertation does. Its
+# stiffness across the thickness is hardly known, and the answer hangs on it.
+
+# %%
+moduli, sizes = np.geomspace(1, 100, 60), np.linspace(0.05, 6, 40)
+with publication_style():
+    figure, (left, right) = plt.subplots(
+        1, 2, figsize=(6.6, 2.9), sharey=True, layout="constrained"
+    )
+    for line, speed in zip(LINES, (5, 50, 200), strict=False):
+        over = line_over(
+            "webbing_on_ring", "modulus", moduli, "MPa", speed=f"{speed}mm/s"
+        )
+        left.semilogx(moduli, over, linestyle=line, label=f"{speed} mm/s")
+    for line, modulus in zip(LINES, (10, 30, 100), strict=False):
+        over = line_over(
+            "webbing_on_ring", "amplitude", sizes, "um", modulus=f"{modulus}MPa"
+        )
+        right.plot(sizes, over, linestyle=line, label=f"{modulus} MPa")
+    left.set(xlabel="Modulus across the webbing [MPa]", ylim=(0, 1.05))
+    left.set_ylabel("Friction ratio [-]")
+    right.set(xlabel="Vibration amplitude [µm]")
+    left.legend(title="2.17 µm")
+    right.legend(title="50 mm/s")
+shown_in_notebooks(figure)
+
+# %% [markdown]
+# ## A finger on a vibrating plate
+#
+# Film of air and asperities of the skin share the load, and friction is that of the
+# asperities. What the finger follows of the motion makes no film.
+
+# %%
+sizes = np.linspace(0.02, 4, 60)
+with publication_style():
+    figure, axes = plt.subplots(figsize=(4.4, 3))
+    for line, part in zip(LINES, (0, 0.5, 0.8), strict=False):
+        over = line_over("finger_on_glass", "amplitude", sizes, "um", following=part)
+        axes.plot(sizes, over, linestyle=line, label=f"{part:.0%}")
+    axes.set(xlabel="Vibration amplitude [µm]", ylim=(0, 1.05))
+    axes.set_ylabel("Friction ratio, share of asperities [-]")
+    axes.legend(title="Followed by the finger")
+shown_in_notebooks(figure)
+
+# %%
+sl.friction("../rigs/finger_on_glass.toml")

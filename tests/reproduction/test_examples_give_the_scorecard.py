@@ -22,7 +22,10 @@ _PERCENT, _MICRO, _MM3_PER_M = 100.0, 1e6, 1e9  # from SI to the printed unit
 _SINE = ("--amplitude", "per-volt")
 _COMPUTED = ("--amplitude", "computed")
 # rows of the cutter head are of soft layers fitted to the measurement, which no rig file holds; the others are not of D
-_NO_ROW = {"cutter_head", "bronze_bush", "contact_resonance", "vibrating_base", "finger_on_glass", "pom_on_steel"}
+_NO_ROW = {
+    *("cutter_head", "bronze_bush", "contact_resonance", "vibrating_base"),
+    *("finger_on_glass", "pom_on_steel", "webbing_on_ring"),
+}
 
 
 @dataclass(frozen=True, kw_only=True)

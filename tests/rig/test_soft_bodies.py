@@ -14,7 +14,7 @@ from sonolube.rig.file.reader import rig_from
 from sonolube.rig.simulation import operating_caveats
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
-SOFT = ("finger_on_glass", "pom_on_steel")
+SOFT = ("finger_on_glass", "pom_on_steel", "webbing_on_ring")
 
 
 def felt(**contact: str) -> dict[str, object]:

@@ -305,10 +305,12 @@ def decay_length_caveat(rig: Rig | ResolvedRig, *, vibration_amplitude: float | 
     str or None
         With the friction ratio of a sine of that amplitude by the rig's own friction model, for its own decay length
         and for the median of `PUBLISHED_DECAY_LENGTH`, where it has an amplitude; None where the rig states its decay
-        length, its heights are not exponential, or R_q/lambda lies within the central 95 % of that population.
+        length, its friction model is of soft bodies or within the plane, its heights are not exponential, or R_q/lambda
+        lies within the central 95 % of that population.
     """
     resolved = resolved_rig(rig)
-    if "normal" not in resolved.rig.friction_model.directions:  # to which the gap is nothing
+    model = resolved.rig.friction_model
+    if model.for_soft_bodies or "normal" not in model.directions:  # hard worn contacts tell nothing of it
         return None
     contact, (low, high) = resolved.rig.contact, PUBLISHED_DECAY_LENGTH.central_range()
     heights = contact.heights
@@ -326,8 +328,7 @@ def decay_length_caveat(rig: Rig | ResolvedRig, *, vibration_amplitude: float | 
 
 def resting_caveats(resolved: ResolvedRig, *, vibration_amplitude: float | None = None) -> tuple[str, ...]:
     """Caveats of the contact of a rig under its load, that of its decay length included."""
-    is_soft = resolved.rig.friction_model.for_soft_bodies  # the decay length of hard worn contacts tells nothing of it
-    caveat = None if is_soft else decay_length_caveat(resolved, vibration_amplitude=vibration_amplitude)
+    caveat = decay_length_caveat(resolved, vibration_amplitude=vibration_amplitude)
     own = contact_caveats(resolved.rig.contact, separation=resolved.separation)
     return (*own, *(() if caveat is None else (caveat,)))
 

@@ -1,9 +1,8 @@
-"""Estimates of flow stress, drawing stress and contact of a tool against integrations over the period."""
+"""Estimates of flow stress and drawing stress against integrations over the period."""
 
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
-from numpy.typing import NDArray
 from pytest import approx, raises
 
 from sonolube.checks import Floats
@@ -17,7 +16,6 @@ from sonolube.models.friction import (
     parallel_vibration_ratio,
     reference_intensity_from_test,
     superposed_mean_stress,
-    tool_contact_fraction,
     vibrated_drawing_stress,
 )
 
@@ -144,41 +142,3 @@ def test_a_die_or_a_reduction_that_cannot_be_is_refused() -> None:
         drawing_stress(yield_strength=1.0, **DIE | {"area_reduction": 1.0})
     with raises(InvalidInput, match="die_half_angle must lie between"):
         drawing_stress(yield_strength=1.0, **DIE | {"die_half_angle": 6.0})
-
-
-def cutting_phases(ratio: float, *, count: int = 200_000) -> tuple[NDArray[np.bool_], Floats]:
-    """Phases of a steady period at which a tool cuts, and its velocity, by following the front of the chip."""
-    phase = (np.arange(3 * count) + 0.5) * 2 * np.pi / count
-    position = ratio * phase + np.cos(phase)
-    cuts = position >= np.maximum.accumulate(position)
-    return cuts[-count:], (ratio - np.sin(phase))[-count:]
-
-
-@pytest.mark.parametrize("ratio", [1e-3, 0.01, 0.1, 0.4, 0.8, 0.95, 0.999])
-def test_a_tool_cuts_for_the_fraction_found_by_following_it_in_time(ratio: float) -> None:
-    cuts, velocity = cutting_phases(ratio)
-    found = float(tool_contact_fraction(cutting_speed=ratio, vibration_velocity=1.0))
-    assert found == approx(cuts.mean(), abs=2e-5)
-    # what is cut in a period is what the tool advances, so that the work on a length of chip is that without vibration
-    assert (cuts * velocity).mean() == approx(ratio, abs=2e-5)
-
-
-def test_the_contact_of_a_tool_has_its_limits() -> None:
-    slow = np.array([1e-8, 1e-6])
-    found = tool_contact_fraction(cutting_speed=slow, vibration_velocity=1.0)
-    assert found == approx(np.sqrt(slow / np.pi), rel=1e-3)
-    whole = tool_contact_fraction(cutting_speed=[1.0, 1.5, 0.5], vibration_velocity=[1.0, 1.0, 0.0])
-    assert whole.tolist() == [1.0, 1.0, 1.0]
-    near = float(tool_contact_fraction(cutting_speed=1 - 1e-6, vibration_velocity=1.0))
-    # a cubic near the critical speed: apart for 3 arccos(v/v_1) of phase
-    assert 1 - near == approx(3 * np.arccos(1 - 1e-6) / (2 * np.pi), rel=1e-3)
-
-
-@given(speed=st.floats(1e-6, 3), scale=st.floats(1e-3, 1e3))
-def test_the_contact_of_a_tool_depends_on_the_ratio_of_the_speeds_and_grows_with_it(speed: float, scale: float) -> None:
-    one, same, faster = (
-        float(tool_contact_fraction(cutting_speed=speed * k * s, vibration_velocity=s))
-        for k, s in ((1, 1), (1, scale), (1.05, 1))
-    )
-    assert same == approx(one, rel=1e-6)
-    assert 0 < one <= faster <= 1

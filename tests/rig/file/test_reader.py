@@ -35,6 +35,7 @@ NAMES = (
     "cutter_head",
     "finger_on_glass",
     "pom_on_steel",
+    "webbing_on_ring",
     "collar",
     "coated_plate",
     "coated_temperature",

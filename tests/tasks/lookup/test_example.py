@@ -96,7 +96,13 @@ def test_a_script_is_written_with_the_rigs_that_it_reads_and_the_command_that_ru
     assert not any("gallery" in each.path or "notebooks" in each.path for each in example_files().values())
 
 
-@pytest.mark.parametrize("name", ["wire_drawing", "vibrated_turning", "bronze_bush"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("wire_drawing", "vibrated_turning", "vibrated_drilling"),
+        *("bronze_bush", "pom_on_steel", "webbing_on_ring", "finger_on_glass"),
+    ],
+)
 def test_the_worked_cases_of_the_page_are_examples(name: str) -> None:
     assert f"`{name}`" in (ROOT / "docs" / "applications.md").read_text(encoding="utf-8")
     assert [Path(path).stem for path in example(name).files()] == [name]

@@ -48,6 +48,10 @@ from .lubrication import (
     shared_coefficients as shared_coefficients,
     stribeck_coefficient as stribeck_coefficient,
 )
+from .metal_cutting import (
+    feed_contact_fraction as feed_contact_fraction,
+    tool_contact_fraction as tool_contact_fraction,
+)
 from .metal_forming import (
     ZINC_STRESS_RATIO as ZINC_STRESS_RATIO,
     acoustic_intensity as acoustic_intensity,
@@ -55,7 +59,6 @@ from .metal_forming import (
     drawing_stress as drawing_stress,
     reference_intensity_from_test as reference_intensity_from_test,
     superposed_mean_stress as superposed_mean_stress,
-    tool_contact_fraction as tool_contact_fraction,
     vibrated_drawing_stress as vibrated_drawing_stress,
 )
 from .models import (

@@ -1,7 +1,6 @@
-"""Metal forming and cutting under vibration: estimates of mean flow stress, drawing stress and contact of a tool.
+"""Metal forming under vibration: estimates of the mean flow stress and of a drawing stress.
 
-Flow stress by superposition and by acoustic softening; drawing stress of a wire through a die that vibrates along it;
-fraction of the period in which a tool cuts that vibrates along the cutting direction.
+Flow stress by superposition and by acoustic softening; drawing stress of a wire through a die that vibrates along it.
 """
 
 import numpy as np
@@ -316,58 +315,3 @@ def _slab_stress(friction: Floats, strain: Floats) -> Floats:
     is_small = np.abs(exponent) < 1e-12
     safe = np.where(is_small, 1.0, exponent)
     return (1 + friction) * strain * np.where(is_small, 1.0, -np.expm1(-safe) / safe)
-
-
-def tool_contact_fraction(*, cutting_speed: ArrayLike, vibration_velocity: ArrayLike) -> Floats:
-    r"""Fraction of the period in which a tool cuts that vibrates along the cutting direction. []
-
-    Parameters
-    ----------
-    cutting_speed : array_like
-        Mean speed of the tool along the work. [m/s]
-    vibration_velocity : array_like, broadcast against `cutting_speed`
-        Peak velocity of the vibration, 2 pi f a, which is the critical cutting speed; zero for none. [m/s]
-
-    Returns
-    -------
-    ndarray, shape of the broadcast arguments
-        1 from the critical speed on.
-
-    Raises
-    ------
-    InvalidInput
-        If a speed is not positive, a vibration negative, or a value not finite.
-
-    Notes
-    -----
-    The tool leaves the chip where its velocity over the work is zero, and meets it again where it was. With the
-    cutting speed :math:`\zeta = v/(2\pi f a) < 1` and :math:`\delta = \arccos\zeta`, the phase psi without contact is
-    the root between 2 delta and 2 pi of
-
-    .. math:: \sin(\psi - \delta) + \sin\delta = \zeta\psi , \qquad q = 1 - \frac{\psi}{2\pi} ,
-
-    by bisection; q is :math:`\sqrt{\zeta/\pi}` for slow cutting. A cutting force that depends neither on the speed nor
-    on the vibration while it acts has q times its value on average: the spindle gives q of the power, the vibration
-    the rest, and the work on a length of chip remains. Waves in the tool and the chip, friction on the faces, and a
-    softer metal are left out. Vibration along the feed, as of a drill along its axis, is another problem.
-
-    References
-    ----------
-    .. [1] R. C. Skelton, Turning with an oscillating tool, Int. J. Mach. Tool Des. Res. 8, 239 (1968).
-       doi:10.1016/0020-7357(68)90014-0
-
-    Examples
-    --------
-    >>> from sonolube.models.friction import tool_contact_fraction
-    >>> tool_contact_fraction(cutting_speed=[0.1, 0.5, 2.0], vibration_velocity=1.257).round(3).tolist()
-    [0.164, 0.409, 1.0]
-    """
-    speed = require_positive(cutting_speed=cutting_speed)
-    ratio = speed / np.maximum(require_non_negative(vibration_velocity=vibration_velocity), speed)
-    lag = np.arccos(ratio)
-    low, high = 2 * lag, np.full_like(lag, 2 * np.pi)
-    for _ in range(60):
-        middle = (low + high) / 2
-        is_apart = np.sin(middle - lag) + np.sin(lag) > ratio * middle
-        low, high = np.where(is_apart, middle, low), np.where(is_apart, high, middle)
-    return np.where(ratio < 1, 1 - low / (2 * np.pi), 1.0)
