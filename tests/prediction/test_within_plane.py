@@ -60,7 +60,9 @@ def test_two_points_hardly_change_the_width_learned_along_the_normal() -> None:
 
 @mark.parametrize("zeta", [0.01, 0.0934, 0.5, 0.999, 1.0, 1.5, 30.0])
 def test_the_law_has_the_closed_forms_along_and_across(zeta: float) -> None:
-    along, across = (float(coulomb_ratio(VibrationDirection(direction=word), zeta)) for word in ("along", "across"))
+    along, across = (
+        float(coulomb_ratio(VibrationDirection(direction=word), velocity_ratio=zeta)) for word in ("along", "across")
+    )
     m = 1 / (1 + zeta**2)
     assert along == approx(2 / np.pi * np.arcsin(min(zeta, 1.0)))
     assert across == approx(2 / np.pi * np.sqrt(1 - m) * ellipk(m), abs=1e-4)
@@ -68,9 +70,11 @@ def test_the_law_has_the_closed_forms_along_and_across(zeta: float) -> None:
 
 def test_a_ring_is_the_mean_over_its_directions() -> None:
     angles = (np.arange(720) + 0.5) / 720 * np.pi
-    mean = np.mean([coulomb_ratio(VibrationDirection(vibration_direction=angle), 0.5) for angle in angles])
+    mean = np.mean(
+        [coulomb_ratio(VibrationDirection(vibration_direction=angle), velocity_ratio=0.5) for angle in angles]
+    )
     ring = VibrationDirection(direction="torsional", torsion_radius=2e-3)
-    assert float(coulomb_ratio(ring, 0.5)) == approx(mean, abs=1e-4)
+    assert float(coulomb_ratio(ring, velocity_ratio=0.5)) == approx(mean, abs=1e-4)
 
 
 def test_the_median_of_the_example_is_coulombs_law_and_its_interval_holds_what_was_measured() -> None:

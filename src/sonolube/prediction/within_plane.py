@@ -95,7 +95,7 @@ def is_predicted(direction: VibrationDirection) -> bool:
     return direction.is_in_plane and direction.second_direction is None
 
 
-def coulomb_ratio(direction: VibrationDirection, velocity_ratio: ArrayLike) -> Floats:
+def coulomb_ratio(direction: VibrationDirection, *, velocity_ratio: ArrayLike) -> Floats:
     """Friction ratio by Coulomb's law, at velocity ratios of any shape, across the sliding to 1e-4."""
     zeta = np.asarray(velocity_ratio, dtype=np.float64)
     if _sine(direction) < _ALONG:
@@ -125,7 +125,7 @@ def _sine(direction: VibrationDirection) -> float:
 def _ratio(_: ArrayLike, at: Conditions) -> Floats:
     """Coulomb's law, which has no parameter."""
     assert isinstance(at, PlaneConditions)
-    return coulomb_ratio(at.direction, at.velocity_ratio)
+    return coulomb_ratio(at.direction, velocity_ratio=at.velocity_ratio)
 
 
 COULOMB: Final = Closure(
