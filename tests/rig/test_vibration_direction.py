@@ -11,7 +11,6 @@ from scipy.special import ellipk
 import sonolube as sl
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.models.friction import torsional_vibration_ratio
-from sonolube.prediction.applicability import friction_interval
 from sonolube.rig import Rig, friction_point, operating_points, point_batch, read_rig, rig_from, simulate, wear_point
 from sonolube.rig.contact_temperature import temperature_point, thermal_solid
 from sonolube.rig.resolved_rig import resolved_rig
@@ -291,13 +290,6 @@ def test_a_new_ring_has_its_radius_and_a_normal_one_nothing_new() -> None:
     ):
         with raises(SonolubeError, match=message):
             sl.new(**KNOWN, amplitude="3um", **given)
-
-
-def test_what_is_learnt_along_the_normal_refuses_a_direction() -> None:
-    rig = read_rig(RIGS / "vibrating_base.toml")
-    with raises(InvalidInput, match="a prediction is of vibration along the normal, but this one is along the sliding"):
-        sl.predict(rig)
-    assert "too few tests" in friction_interval(rig).reason
 
 
 def test_what_needs_the_motion_along_the_normal_refuses_and_says_what_to_do() -> None:

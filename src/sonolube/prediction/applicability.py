@@ -16,13 +16,14 @@ from sonolube.prediction.hierarchy import central_interval
 from sonolube.prediction.inputs import RigInputs, rig_inputs, within_plane_refusal
 from sonolube.prediction.posterior import learned
 from sonolube.prediction.predictive import DRAWS, ratio_draws
+from sonolube.prediction.within_plane import is_predicted, plane_caveats, plane_extrapolation, plane_posterior
 from sonolube.rig import ResolvedRig, Rig, thermal_solid
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.text.units import format_si
 from sonolube.validation.published_tests import friction_tests
 
 NORMAL_VIBRATION: Final = "The vibration is along the normal of the contact."
-"""Sentence of every prediction: all published tests that it learns from have this direction."""
+"""Sentence of a prediction of vibration along the normal, as almost all published tests are."""
 
 _SOFT_FAMILIES: Final = frozenset(
     {"polymer", "rubber", "elastomer", "felt", "skin", "foam", "textile", "leather", "webbing"}
@@ -60,22 +61,25 @@ class Applicability:
 def applicability(rig: Rig, *, lubricant: bool = False) -> Applicability:
     """Direction, bodies, lubricant and frequency of a rig against what predictions are learned from.
 
-    Refused are a vibration with a part in the plane of contact, and soft bodies: polymers, rubber, felt, skin, foam,
+    Refused are a vibration of two components, and soft bodies: polymers, rubber, felt, skin, foam,
     an effective modulus below 10 GPa where not both materials are named, or a friction model of soft bodies. A
     coefficient of friction below 0.15 of metals, or of hard bodies without names, counts as that of a lubricated
     contact.
     """
     lubricated = _lubrication(rig, lubricant=lubricant)
+    tested = plane_caveats(rig.direction) if is_predicted(rig.direction) else ()
     return Applicability(
-        refusal=_in_plane(rig) or _soft(rig), caveats=(*lubricated, *_frequency(rig)), any_ratio=bool(lubricated)
+        refusal=_in_plane(rig) or _soft(rig),
+        caveats=(*tested, *lubricated, *_frequency(rig)),
+        any_ratio=bool(lubricated),
     )
 
 
 def _in_plane(rig: Rig) -> str | None:
-    """Refusal of a vibration that is not along the normal alone."""
+    """Refusal of a vibration of two components."""
     fraction = getattr(rig.friction_model, "in_plane_fraction", 0.0)
     if not rig.direction.is_normal:
-        return within_plane_refusal(rig)
+        return None if is_predicted(rig.direction) else within_plane_refusal(rig)
     if not fraction:
         return None
     return (
@@ -120,7 +124,7 @@ def _lubrication(rig: Rig, *, lubricant: bool) -> tuple[str, ...]:
 
 def _frequency(rig: Rig) -> tuple[str, ...]:
     """Caveat of a frequency beyond those of the published tests."""
-    if rig.drive is None:
+    if rig.drive is None or not rig.direction.is_normal:  # Coulomb's law knows velocities alone
         return ()
     tested = np.concatenate([each.at.conditions.frequency for each in published_rigs()])
     low, high, own = float(tested.min()), float(tested.max()), rig.drive.frequency
@@ -138,6 +142,8 @@ def extrapolation_caveats(rig: Rig, inputs: RigInputs) -> tuple[str, ...]:
 
     Empty where all conditions lie within.
     """
+    if not rig.direction.is_normal:
+        return plane_extrapolation(inputs.at().conditions)
     outside = [
         f"{label} {format_si(value, unit)} ({format_si(low, unit)} to {format_si(high, unit)})"
         for label, value, unit, tested in _conditions(rig, inputs)
@@ -212,18 +218,15 @@ class FrictionInterval:
 def friction_interval(rig: Rig | ResolvedRig) -> FrictionInterval:
     """Interval of the friction ratio of a rig at its operating point, without own runs; equal to that of `predict`."""
     resolved = resolved_rig(rig)
-    if not resolved.rig.direction.is_normal:
-        return FrictionInterval(
-            reason=f"too few tests of vibration {resolved.rig.direction.text} are published to learn from"
-        )
     try:
         limits = applicability(resolved.rig)
         if limits.refusal:
             return FrictionInterval(reason=limits.refusal)
         if limits.any_ratio:
-            return FrictionInterval(reason=limits.caveats[0])
-        at = rig_inputs(resolved).at()
+            return FrictionInterval(reason=_lubrication(resolved.rig, lubricant=False)[0])
+        at = rig_inputs(resolved, takes_plane=True).at()
     except SonolubeError as refusal:
         return FrictionInterval(reason=str(refusal))
-    low, high = central_interval(ratio_draws(learned().friction, at, count=DRAWS)[:, 0], 0.8)
+    posterior = learned().friction if resolved.rig.direction.is_normal else plane_posterior()
+    low, high = central_interval(ratio_draws(posterior, at, count=DRAWS)[:, 0], 0.8)
     return FrictionInterval(low=float(low), high=float(high))

@@ -24,7 +24,7 @@ from sonolube.validation.published_tests import FrictionTest, friction_tests
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Conditions:
-    """Conditions of one or many tests of a rig under vibration along the normal; arrays broadcast.
+    """Conditions of one or many tests of a rig, its vibration along the normal; arrays broadcast.
 
     Parameters
     ----------
@@ -50,7 +50,11 @@ class Conditions:
     def taken(self, rows: Integers) -> "Conditions":
         """Conditions of some tests."""
         names = ("vibration_amplitude", "frequency", "sliding_speed", "decay_length")
-        return Conditions(**{name: getattr(self, name)[rows] for name in names})
+        return replace(self, **{name: getattr(self, name)[rows] for name in names})
+
+    def distance(self) -> Floats:
+        """Distance from the published tests, with which the discrepancy of a friction model grows."""
+        return distance_from_tests(self)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -160,7 +164,8 @@ REFERENCE_DECAY_LENGTH: Final = 1.5e-6
 """Decay length l_0 of the force of a worn contact, about which that of the population is sought. [m]"""
 
 _RESONANCE: Final = (2.0, 0.7)  # gain of set H over the quasi-static stroke, of which nothing is printed; its spread
-_UNSTATED_UNCERTAINTY: Final = 0.05  # of a friction ratio without printed scatter; the printed ones have 0.047
+UNSTATED_UNCERTAINTY: Final = 0.05
+"""Of a friction ratio without printed scatter; the printed ones have 0.047. []"""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -246,7 +251,7 @@ def _rig(name: str, tests: tuple[FrictionTest, ...]) -> TestedRig:
             conditions=conditions, decay_length_spread=None, amplitude_spread=amplitude_spread, amplitude_factor=gain
         ),
         friction_ratio=np.array([test.friction_ratio for test in tests]),
-        uncertainty=np.array([test.uncertainty or _UNSTATED_UNCERTAINTY for test in tests]),
+        uncertainty=np.array([test.uncertainty or UNSTATED_UNCERTAINTY for test in tests]),
     )
 
 

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, Integers
-from sonolube.prediction.evidence import Closure, Conditions, TestedRig, UncertainConditions, distance_from_tests
+from sonolube.prediction.evidence import Closure, Conditions, TestedRig, UncertainConditions
 
 PROBABILITIES: Final = (0.5, 0.8, 0.95)
 """Of the predictive intervals that are told and judged."""
@@ -291,7 +291,7 @@ def discrepancy_correlation(one: Conditions, other: Conditions, *, log_length: A
 
 def discrepancy_deviation(ratio: Floats, at: Conditions, *, log_discrepancy: Floats) -> Floats:
     """Standard deviation of the discrepancy at conditions; `ratio` has shape (..., n)."""
-    distance = distance_from_tests(at)
+    distance = at.distance()
     least = np.minimum(_MIN_DISCREPANCY + _PER_DISTANCE * distance, 1.0)
     share = np.clip((1 - ratio) / _FULL_DISCREPANCY, least, 1.0) * np.sqrt(1 + distance**2)
     return np.asarray(np.exp(log_discrepancy)[..., None] * share)

@@ -12,9 +12,11 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_runs import checked_ratios, copies_caveat, run_caveats, setting
 from sonolube.prediction.evidence import REFERENCE_DECAY_LENGTH, Conditions, TestedRig, UncertainConditions
 from sonolube.prediction.posterior import Posterior, learned
+from sonolube.prediction.within_plane import NO_LENGTH_ERROR, is_predicted, within_plane
 from sonolube.rig import Distribution, FrictionPoint, ResolvedRig, Rig, friction_point
 from sonolube.rig.amplitude_source import AMPLITUDE_ERROR
 from sonolube.rig.resolved_rig import resolved_rig
+from sonolube.rig.vibration_direction import NORMAL, VibrationDirection
 from sonolube.text.units import format_si
 from sonolube.validation.run_conditions import known_amplitudes, pooled_scatter
 from sonolube.vocabulary import quantity
@@ -80,7 +82,7 @@ class RigInputs:
         Decay length of the contact force, vibration amplitude and intrinsic coefficient of friction: the uncertain
         ones.
     measured_length : bool
-        Whether the decay length is known on this rig; else it is that of the population.
+        Whether the decay length is known on this rig, or without effect; else it is that of the population.
     frequency : float
         Of the vibration. [Hz]
     sliding_speed : float
@@ -91,6 +93,8 @@ class RigInputs:
         Of the drive, where it is known. [V]
     point : FrictionPoint
         Friction by the rig's own model.
+    direction : VibrationDirection
+        Of the vibration; within the plane nothing depends on the decay length.
     """
 
     decay: Input
@@ -102,15 +106,18 @@ class RigInputs:
     normal_load: float
     voltage_peak_to_peak: float | None
     point: FrictionPoint
+    direction: VibrationDirection = NORMAL
 
     @property
-    def uncertain(self) -> tuple[Input, Input, Input]:
-        """Decay length, amplitude and dry friction."""
-        return self.decay, self.amplitude, self.friction
+    def uncertain(self) -> tuple[Input, ...]:
+        """Decay length where it has an effect, amplitude and dry friction."""
+        others = self.amplitude, self.friction
+        return (self.decay, *others) if self.direction.is_normal else others
 
     def with_input(self, known: Input) -> "RigInputs":
         """Inputs with the uncertain one of the same name replaced."""
-        length, amplitude, friction = (known if known.name == each.name else each for each in self.uncertain)
+        every = self.decay, self.amplitude, self.friction
+        length, amplitude, friction = (known if known.name == each.name else each for each in every)
         return replace(self, decay=length, amplitude=amplitude, friction=friction)
 
     def at(
@@ -121,23 +128,29 @@ class RigInputs:
         speed = self.sliding_speed if sliding_speed is None else sliding_speed
         a, v = np.broadcast_arrays(np.atleast_1d(np.asarray(amplitude, float)), np.asarray(speed, float))
         length = self.decay.value if self.measured_length else REFERENCE_DECAY_LENGTH
+        conditions = Conditions(
+            vibration_amplitude=a,
+            frequency=np.full(a.shape, self.frequency),
+            sliding_speed=v,
+            decay_length=np.full(a.shape, length),
+        )
+        if not self.direction.is_normal:
+            conditions = within_plane(conditions, self.direction)
         return UncertainConditions(
-            conditions=Conditions(
-                vibration_amplitude=a,
-                frequency=np.full(a.shape, self.frequency),
-                sliding_speed=v,
-                decay_length=np.full(a.shape, length),
-            ),
+            conditions=conditions,
             decay_length_spread=self.decay.spread if self.measured_length else None,
             amplitude_spread=self.amplitude.spread,
         )
 
 
-def rig_inputs(rig: Rig | ResolvedRig) -> RigInputs:
-    """Inputs of a prediction from a rig file: its own distributions where it has them, else usual ones."""
+def rig_inputs(rig: Rig | ResolvedRig, *, takes_plane: bool = False) -> RigInputs:
+    """Inputs of a prediction from a rig file: its own distributions where it has them, else usual ones.
+
+    A vibration within the plane is refused but for `takes_plane`.
+    """
     resolved = resolved_rig(rig)
     rig = resolved.rig
-    if not rig.direction.is_normal:
+    if not (rig.direction.is_normal or (takes_plane and is_predicted(rig.direction))):
         raise InvalidInput(within_plane_refusal(rig))
     if rig.drive is None:
         raise InvalidInput(f"{rig.title}: a prediction needs a frequency; give drive.frequency")
@@ -146,7 +159,7 @@ def rig_inputs(rig: Rig | ResolvedRig) -> RigInputs:
     point = friction_point(resolved)
     if not point.vibration_amplitude > 0:
         raise InvalidInput(f"{rig.title}: a prediction needs vibration; the vibration amplitude is 0 m")
-    length = _measured_decay_length(rig)
+    length = _measured_decay_length(rig) if rig.direction.is_normal else _NO_LENGTH
     return RigInputs(
         decay=length or decay_length_of(learned().friction, known_from="published tests"),
         amplitude=_amplitude(rig, point),
@@ -157,15 +170,31 @@ def rig_inputs(rig: Rig | ResolvedRig) -> RigInputs:
         normal_load=rig.normal_load,
         voltage_peak_to_peak=rig.drive.voltage_peak_to_peak,
         point=point,
+        direction=rig.direction,
     )
 
 
 def within_plane_refusal(rig: Rig) -> str:
-    """Why there is no prediction of a vibration with a part within the plane, and what to do instead."""
+    """Why a vibration with a part within the plane is not taken, and what to do instead."""
+    if is_predicted(rig.direction):
+        return (
+            f"{rig.title}: this rests on tests of vibration along the normal, but this one is {rig.direction.text}; use"
+            " predict or friction, which say how far it was tested, or fit own runs"
+        )
     return (
-        f"{rig.title}: a prediction is of vibration along the normal, but this one is {rig.direction.text}; use"
+        f"{rig.title}: a prediction takes one component of vibration, but this one is {rig.direction.text}; use"
         " friction, which gives the theory, or fit own runs"
     )
+
+
+_NO_LENGTH: Final = Input(
+    name="decay_length",
+    label="decay length of the contact",
+    value=REFERENCE_DECAY_LENGTH,
+    spread=NO_LENGTH_ERROR,
+    reason="without effect within the plane",
+    remedy="none",
+)
 
 
 def _measured_decay_length(rig: Rig) -> Input | None:
@@ -244,6 +273,7 @@ def _lognormal(distribution: Distribution) -> tuple[float, float]:
 _MAX_RUNS: Final = 200
 _USUAL_UNCERTAINTY: Final = 0.05  # of a friction ratio, where neither column nor repeats state it
 _MIN_REPEATS: Final = 4  # from which the scatter of repeats is taken
+_SAME_ANGLE: Final = 0.02  # rad
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -276,8 +306,7 @@ def own_runs(runs: "xr.Dataset", inputs: RigInputs, *, title: str) -> OwnRuns:
     if count > _MAX_RUNS:
         raise InvalidInput(f"{title}: {count} runs; at most {_MAX_RUNS} update a prediction: average repeats")
     ratio, copies = checked_ratios(runs, title=title), copies_caveat(runs)
-    if np.any(np.isfinite(setting(runs, "vibration_direction", np.nan))):
-        raise InvalidInput(f"{title}: a prediction is of vibration along the normal; leave out runs with a direction")
+    _require_direction(setting(runs, "vibration_direction", np.nan), inputs.direction, title=title)
     amplitude, speed = _amplitudes(runs, inputs), setting(runs, "sliding_speed", inputs.sliding_speed)
     for name, values in (("vibration_amplitude", amplitude), ("sliding_speed", speed)):
         if not np.all(values > 0):
@@ -297,6 +326,17 @@ def own_runs(runs: "xr.Dataset", inputs: RigInputs, *, title: str) -> OwnRuns:
         wear_runs=stated,
         caveats=caveats,
     )
+
+
+def _require_direction(angles: Floats, direction: VibrationDirection, *, title: str) -> None:
+    """Refuse runs that state another direction than that of the rig."""
+    stated = angles[np.isfinite(angles)]
+    if direction.is_normal and stated.size:
+        raise InvalidInput(
+            f"{title}: this prediction is of vibration along the normal; leave out runs with a direction"
+        )
+    if stated.size and (direction.angle is None or np.any(np.abs(np.sin(stated - direction.angle)) > _SAME_ANGLE)):
+        raise InvalidInput(f"{title}: the rig vibrates {direction.text}; leave out runs in other directions")
 
 
 def _amplitudes(runs: "xr.Dataset", inputs: RigInputs) -> Floats:

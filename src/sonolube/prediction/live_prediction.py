@@ -29,8 +29,10 @@ from sonolube.prediction.posterior import learned
 from sonolube.prediction.predictive import DRAWS, Laboratory, RigPrediction, laboratory, rig_prediction
 from sonolube.prediction.rig_statement import prediction_attributes, statement, wear_sentence
 from sonolube.prediction.wear import vibration_weight
+from sonolube.prediction.within_plane import NO_HEAT, plane_posterior
 from sonolube.rig import Rig
 from sonolube.rig.datasets import LabelledArray, LabelledArrays, labels
+from sonolube.rig.vibration_direction import VibrationDirection
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -92,7 +94,7 @@ class LivePrediction:
             raise InvalidInput(f"draws must lie between {_FEWEST} and {_MOST}, got {draws}")
         self._runs, self._materials, self._lubricant = runs, (pin, disc), lubricant
         self._draws, self._seed = draws, seed
-        self._kept: tuple[bytes, RigPrediction] | None = None
+        self._kept: tuple[tuple[VibrationDirection, bytes], RigPrediction] | None = None
         self._laboratory = _laboratory(laboratory_runs, seed=seed) if laboratory_runs else None
         self._posterior = learned().friction if self._laboratory is None else self._laboratory.posterior
         self.first: LabelledArrays = self.at(rig)
@@ -120,13 +122,18 @@ class LivePrediction:
         limits = applicability(rig, lubricant=self._lubricant)
         if limits.refusal:
             raise InvalidInput(limits.refusal)
-        inputs = rig_inputs(rig)
+        inputs = rig_inputs(rig, takes_plane=True)
+        if self._laboratory is not None and not inputs.direction.is_normal:
+            raise InvalidInput(
+                f"{rig.title}: other rigs tell of the decay length alone, without effect here; leave them out"
+            )
         if self._laboratory is not None and not inputs.measured_length:
             inputs = inputs.with_input(decay_length_of(self._posterior, known_from=self._laboratory.known_from))
         own = None if self._runs is None else own_runs(self._runs, inputs, title=rig.title)
         if own is not None and own.friction is not None:
             inputs = inputs.with_input(own.friction)
-        return self._arrays(rig, inputs, own, limits, contact_heating(rig, *self._materials))
+        heating = contact_heating(rig, *self._materials)
+        return self._arrays(rig, inputs, own, limits, heating if inputs.direction.is_normal else NO_HEAT)
 
     def _arrays(
         self, rig: Rig, inputs: RigInputs, own: OwnRuns | None, limits: Applicability, heating: float | str
@@ -141,7 +148,9 @@ class LivePrediction:
         }
         ratio = curves["amplitude"][:, _CURVE // 2]
         intrinsic = self._intrinsic(inputs.friction)
-        drawn = _frictional(ratio, intrinsic, rig, heating) | self._wear(rig, found, own, ratio)
+        drawn = _frictional(ratio, intrinsic, rig, heating)
+        if inputs.direction.is_normal:
+            drawn |= self._wear(rig, found, own, ratio)
         uncertain = sorted(inputs.uncertain, key=lambda each: -each.spread)
         logs = own_logarithms(found, intrinsic=intrinsic, seed=self._seed)
         probes = () if inputs.measured_length else _told_probes(rig, inputs)
@@ -175,7 +184,7 @@ class LivePrediction:
             | {
                 "stiffness_probes": "" if inputs.measured_length else "\n".join(probe_sentences(probes)),
                 "heat": heating if isinstance(heating, str) else "",
-                "wear": wear_sentence(rig, ratios=drawn["wear_rate_ratio"], contradicted=_contradicted(found)),
+                "wear": wear_sentence(rig, ratios=drawn.get("wear_rate_ratio"), contradicted=_contradicted(found)),
             },
         )
         return result.assign_attrs(statement="\n".join(statement(result)))
@@ -188,9 +197,10 @@ class LivePrediction:
             seen = tested.at.conditions
             parts += [seen.vibration_amplitude, seen.sliding_speed, seen.frequency, seen.decay_length]
             parts += [tested.friction_ratio, tested.uncertainty]
-        key = np.concatenate(parts).tobytes()
+        key = inputs.direction, np.concatenate(parts).tobytes()
         if self._kept is None or self._kept[0] != key:
-            found = rig_prediction(self._posterior, at, count=self._draws, seed=self._seed, own=tested)
+            posterior = self._posterior if inputs.direction.is_normal else plane_posterior()
+            found = rig_prediction(posterior, at, count=self._draws, seed=self._seed, own=tested)
             self._kept = key, found
         return self._kept[1]
 
@@ -238,7 +248,7 @@ def predict(
     draws: int = DRAWS,
     seed: int = 0,
 ) -> "xr.Dataset":
-    """Friction and wear of a rig under vibration along the normal, with predictive intervals.
+    """Friction and wear of a rig under vibration, with predictive intervals.
 
     Parameters
     ----------
@@ -254,7 +264,8 @@ def predict(
         along `curve_amplitude` and `curve_speed`, with the operating point in their middle. Over `input`, the least
         known first: spread of each uncertain input, and the shares of the 80 % intervals of friction ratio and friction
         force that would be left if it were known well. Over `measure`: measurements that would narrow the interval, and
-        what each would leave of it. Attributes hold caveats, assumptions, and the statement in words.
+        what each would leave of it. Attributes hold caveats, assumptions, and the statement in words. Neither wear nor
+        temperature rise is predicted of a vibration within the plane.
 
     Raises
     ------

@@ -11,8 +11,11 @@ from sonolube.prediction.bodies import pair_of, wear_statement, worn_body
 from sonolube.prediction.hierarchy import PROBABILITIES, central_interval, sorted_quantiles
 from sonolube.prediction.inputs import OwnRuns, RigInputs
 from sonolube.prediction.predictive import Laboratory, RigPrediction, RunCheck
+from sonolube.prediction.within_plane import COULOMB, NO_WEAR, tested_sentence
 from sonolube.rig import Rig
 from sonolube.rig.datasets import LabelledArray, LabelledArrays
+from sonolube.rig.friction_and_wear import direction_caveats
+from sonolube.rig.resolved_rig import resolved_rig
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -66,7 +69,7 @@ def statement(prediction: "xr.Dataset | LabelledArrays") -> tuple[str, ...]:
     """
     sentences = (
         prediction.attrs["contradiction"],
-        f"{_outcome(prediction)} {NORMAL_VIBRATION}",
+        _directed_outcome(prediction),
         prediction.attrs["wear"],
         _advice(prediction),
         _limits(prediction),
@@ -84,10 +87,14 @@ def prediction_attributes(
 ) -> dict[str, object]:
     """Title, caveats, assumptions and numbers without a distribution of a prediction."""
     point = inputs.point
-    caveats = [*limits.caveats, *point.caveats, *extrapolation_caveats(rig, inputs)]
+    said_above = not rig.direction.is_normal and rig.friction_model.name == COULOMB.name
+    own_caveats = [each for each in point.caveats if not said_above or each not in direction_caveats(resolved_rig(rig))]
+    caveats = [*limits.caveats, *own_caveats, *extrapolation_caveats(rig, inputs)]
     caveats += () if laboratory is None else laboratory.caveats
     if own is not None:
         caveats += [*_outlier_caveats(found.check, own), *own.caveats]
+        if own.wear_rate_ratio.size and not rig.direction.is_normal:
+            caveats.append("the wear that the runs state is left out: no prediction of wear is of this direction")
     attributes: dict[str, object] = {
         "result": "prediction",
         "title": rig.title,
@@ -100,12 +107,21 @@ def prediction_attributes(
         "sliding_speed": inputs.sliding_speed,
         "runs": 0 if own is None else own.tested.friction_ratio.size,
     }
+    if not rig.direction.is_normal:
+        attributes["tested"] = tested_sentence(rig.direction)
     if point.actuator_power is not None:
         attributes["actuator_power"] = point.actuator_power
     if np.isfinite(point.friction_ratio):
         attributes["friction_ratio_by_the_rigs_model"] = point.friction_ratio
         attributes["friction_model"] = point.friction_model
     return attributes
+
+
+def _directed_outcome(prediction: "xr.Dataset | LabelledArrays") -> str:
+    """Sentences on direction and change of friction; how far another direction than the normal was tested is first."""
+    tested = prediction.attrs.get("tested")
+    outcome = _outcome(prediction)
+    return f"{outcome} {NORMAL_VIBRATION}" if tested is None else f"{tested} {outcome}"
 
 
 def _outcome(prediction: "xr.Dataset | LabelledArrays") -> str:
@@ -175,8 +191,10 @@ def _outlier_caveats(check: RunCheck | None, own: OwnRuns) -> list[str]:
     ]
 
 
-def wear_sentence(rig: Rig, *, ratios: Floats, contradicted: bool) -> str:
-    """Change of the wear rate in words, with the body that wears."""
+def wear_sentence(rig: Rig, *, ratios: Floats | None, contradicted: bool) -> str:
+    """Change of the wear rate in words, with the body that wears; why it is unknown where there are no ratios."""
+    if ratios is None:
+        return NO_WEAR
     if contradicted:
         return (
             "What vibration does to wear is not known where the runs contradict the prediction of friction: measure it."

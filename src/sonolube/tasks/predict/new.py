@@ -162,8 +162,7 @@ class NewRig(Answer):
         """Title, the inputs known least with how to measure them, and the next command."""
         heads = ("least known", "distribution", "to measure it")
         rows = [(one.key, one.text, one.remedy) for one in self.least_known]
-        following = "predict" if self.rig.direction.is_normal else "friction"  # the theory, where no test tells more
-        command = [] if self.target is None else [Verbatim(f"  next: sonolube {following} {quoted(str(self.target))}")]
+        command = [] if self.target is None else [Verbatim(f"  next: sonolube predict {quoted(str(self.target))}")]
         return [self.rig.title, Table(heads, rows), *command]
 
     def object(self) -> dict[str, Any]:
