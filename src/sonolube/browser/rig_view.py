@@ -144,5 +144,6 @@ def _drawing(rig: Rig) -> dict[str, Any]:
         "has_drive": rig.drive is not None,
         "has_structure": rig.structure is not None,
         "friction_model": rig.friction_model.name,
+        "direction": rig.direction.direction,
         "amplitude_source": rig.amplitude_source or "",
     }

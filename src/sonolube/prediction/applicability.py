@@ -103,7 +103,7 @@ def _soft(rig: Rig) -> str | None:
         return None
     return (
         f"{rig.title}: {why}, and all published tests behind a prediction are of hard bodies; use sonolube friction,"
-        " whose models soft_layer (exponential_layer_ratio, linear_layer_ratio) and squeeze_film are theory alone"
+        " whose models soft_layer and squeeze_film are theory alone"
     )
 
 

@@ -11,7 +11,7 @@ from sonolube.prediction.bodies import pair_of, wear_statement, worn_body
 from sonolube.prediction.hierarchy import PROBABILITIES, central_interval, sorted_quantiles
 from sonolube.prediction.inputs import OwnRuns, RigInputs
 from sonolube.prediction.predictive import Laboratory, RigPrediction, RunCheck
-from sonolube.prediction.within_plane import COULOMB, NO_WEAR, tested_sentence
+from sonolube.prediction.within_plane import COULOMB, NO_WEAR, tested_words
 from sonolube.rig import Rig
 from sonolube.rig.datasets import LabelledArray, LabelledArrays
 from sonolube.rig.friction_and_wear import direction_caveats
@@ -108,7 +108,7 @@ def prediction_attributes(
         "runs": 0 if own is None else own.tested.friction_ratio.size,
     }
     if not rig.direction.is_normal:
-        attributes["tested"] = tested_sentence(rig.direction)
+        attributes["tested"] = tested_words(rig.direction)
     if point.actuator_power is not None:
         attributes["actuator_power"] = point.actuator_power
     if np.isfinite(point.friction_ratio):
@@ -118,10 +118,10 @@ def prediction_attributes(
 
 
 def _directed_outcome(prediction: "xr.Dataset | LabelledArrays") -> str:
-    """Sentences on direction and change of friction; how far another direction than the normal was tested is first."""
+    """Sentence on change of friction and direction; how far another direction than the normal was tested is first."""
     tested = prediction.attrs.get("tested")
     outcome = _outcome(prediction)
-    return f"{outcome} {NORMAL_VIBRATION}" if tested is None else f"{tested} {outcome}"
+    return f"{outcome} {NORMAL_VIBRATION}" if tested is None else f"{tested}: {outcome[0].lower()}{outcome[1:]}"
 
 
 def _outcome(prediction: "xr.Dataset | LabelledArrays") -> str:

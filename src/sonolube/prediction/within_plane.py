@@ -202,11 +202,11 @@ def _log_likelihood(rig: TestedRig, hyperparameters: Floats) -> Floats:
     return np.asarray(np.logaddexp.reduce(densities, axis=1) - np.log(_NODES))
 
 
-def tested_sentence(direction: VibrationDirection) -> str:
-    """How far Coulomb's law was tested in a direction, in one sentence."""
+def tested_words(direction: VibrationDirection) -> str:
+    """How far Coulomb's law was tested in a direction, as the beginning of a sentence."""
     if _sine(direction) < _ALONG:
-        return f"Vibration {direction.text}: Coulomb's law, tested with {len(plane_rigs())} published points."
-    return f"Vibration {direction.text}: theory alone, Coulomb's law; compared with no experiment."
+        return f"Vibration {direction.text}, by Coulomb's law tested with {len(plane_rigs())} published points"
+    return f"Vibration {direction.text}, by theory alone (Coulomb's law, compared with no experiment)"
 
 
 def plane_caveats(direction: VibrationDirection) -> tuple[str, ...]:

@@ -76,11 +76,21 @@ function Value({field, text}) {
     <text x=${x} y=${y} text-anchor=${anchor}>${shown}</text></g>`;
 }
 
+/** Arrows of the vibration by its direction; across the sliding it points out of the drawing. */
+const VIBRATIONS = {
+  normal: 'M168 90 v22 m-3 -17 3 -5 3 5 m-6 12 3 5 3 -5',
+  along: 'M164 104 h24 m-19 -3 -5 3 5 3 m14 -6 5 3 -5 3',
+  across: 'M162 102 a6 6 0 1 0 12 0 a6 6 0 1 0 -12 0 m5 0 h2',
+  torsional: 'M163 106 a13 5 0 0 1 24 0 m-25 -4 1 4 4 0 m21 -4 -1 4 -4 0',
+};
+
 /** Drawing of a rig with its values; a click on a value opens its field. */
 const Schematic = ({drawing, fields, rig}) => html`<svg class="schematic" viewBox="0 0 270 172" role="group" aria-label="Drawing of the rig with its values">
     <g class="schematic-lines" aria-hidden="true">
       ${drawing.has_structure && html`<path d="M20 62 H112" class="thick" /><path d="M20 52 v20 M14 54 l6 6 M14 62 l6 6 M14 70 l6 6" />`}
-      <path d="M135 6 v22 m-4 -6 4 6 4 -6 M168 90 v22 m-3 -17 3 -5 3 5 m-6 12 3 5 3 -5 M96 150 H166 m-6 -4 6 4 -6 4" class="force" />
+      <path d="M135 6 v22 m-4 -6 4 6 4 -6 M96 150 H166 m-6 -4 6 4 -6 4" class="force" />
+      <path d=${VIBRATIONS[drawing.direction] ?? VIBRATIONS.along} class="force" />
+      ${drawing.direction !== 'normal' && html`<text x="194" y="108">${drawing.direction}</text>`}
       <rect x="112" y="32" width="46" height="52" rx="3" class="part" />
       ${drawing.has_drive && html`<path d="M112 42 H158 M112 50 H158 M112 58 H158 M112 66 H158 M112 74 H158" class="thin" />
         <path d="M88 36 q4 -8 8 0 t8 0 M104 36 H112" class="wave" />`}
