@@ -36,7 +36,7 @@ def test_the_cutter_head_on_felt_is_refused_with_the_models_of_soft_layers() -> 
     refusal = applicability(read_rig(RIGS / "cutter_head.toml")).refusal or ""
     assert "1.19 MPa" in refusal
     assert "sonolube friction" in refusal
-    assert "exponential_layer_ratio" in refusal
+    assert "soft_layer" in refusal
     assert "\n" not in refusal
 
 
