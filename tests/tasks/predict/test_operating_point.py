@@ -114,3 +114,10 @@ def test_the_interval_beside_a_friction_ratio_rises_and_is_that_of_the_predictio
     low, high = sl.friction(tribometer).object()["predicted_friction_ratio"]["interval_80"]
     assert 0 <= low < high
     assert [low, high] == approx(sl.predict(tribometer).object()["friction_ratio"]["interval_80"])
+
+
+def test_a_curve_through_folds_refuses_ends_that_do_not_rise(tribometer: Path) -> None:
+    with raises(InvalidInput, match=r"^lowest_voltage 0 must lie above 0 V and below highest_voltage"):
+        response(tribometer, curve="voltage", lowest_voltage=0)
+    with raises(InvalidInput, match=r"^lowest 0 must lie above 0 Hz and below highest"):
+        response(tribometer, curve="frequency", lowest=0)

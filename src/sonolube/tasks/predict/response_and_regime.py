@@ -62,7 +62,7 @@ def response(
     if curve is not None:
         return followed_curve(resolved, along=curve, lowest=lowest, highest=highest, **voltages)
     refuse_unused(*voltages, because="without --curve voltage")
-    low, high = rising_range("lowest", lowest or "1kHz", "highest", highest or "100kHz")
+    low, high = rising_range("lowest", lowest, "highest", highest, usual=("1kHz", "100kHz"))
     result = rigs.frequency_response(resolved, frequency=rigs.frequency_grid(resolved, lowest=low, highest=high))
     natural = modes(rigs.structure_in_contact(resolved))
     return ResponseAnswer(rig=known, result=result, natural_frequency=natural.natural_frequency[~natural.rigid])

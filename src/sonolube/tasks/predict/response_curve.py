@@ -41,23 +41,32 @@ def followed_curve(
     if along == "frequency":
         refuse_unused("lowest_voltage", "highest_voltage", because="along the frequency; it is for --curve voltage")
         middle = drive.frequency
-        ends = rising_range("lowest", lowest or middle * (1 - _ABOUT), "highest", highest or middle * (1 + _ABOUT))
+        usual = middle * (1 - _ABOUT), middle * (1 + _ABOUT)
+        ends = rising_range("lowest", lowest, "highest", highest, usual=usual)
     else:
         refuse_unused("lowest", "highest", because="along the voltage; give --from-voltage and --to-voltage")
         volts = drive.voltage_peak_to_peak
-        ends = rising_range(
-            "lowest_voltage", lowest_voltage or volts / 20, "highest_voltage", highest_voltage or 2 * volts
-        )
+        usual = volts / 20, 2 * volts
+        ends = rising_range("lowest_voltage", lowest_voltage, "highest_voltage", highest_voltage, usual=usual, unit="V")
     return ResponseCurveAnswer(
         rig=resolved.rig, result=rig_response_curve(resolved, along=along, lowest=ends[0], highest=ends[1])
     )
 
 
-def rising_range(low_name: str, low: Number, high_name: str, high: Number) -> tuple[float, float]:
-    """Two ends of a range in SI, refused where they do not rise."""
+def rising_range(
+    low_name: str,
+    low: Number | None,
+    high_name: str,
+    high: Number | None,
+    *,
+    usual: tuple[Number, Number],
+    unit: str = "Hz",
+) -> tuple[float, float]:
+    """Two ends of a range in SI, each the usual one where None, refused where they do not rise."""
+    low, high = usual[0] if low is None else low, usual[1] if high is None else high
     first, last = in_si(low_name, low), in_si(high_name, high)
     if not 0 < first < last:
-        raise InvalidInput(f"{shown(low_name)} {low} must lie above 0 and below {shown(high_name)} {high}")
+        raise InvalidInput(f"{shown(low_name)} {low} must lie above 0 {unit} and below {shown(high_name)} {high}")
     return first, last
 
 
