@@ -216,7 +216,7 @@ def main() -> None:
             page.goto(link)
             page.wait_for_selector("[data-test=numbers]")
             times, own, server = updates(page, parent, chosen.updates)
-            row("an update, processor time of the server", "25 ms", f"{server:.0f} ms")
+            row("an update, processor time of the server", "25 ms", f"{server:.1f} ms")
             row("an update, browser's main thread", "40 ms", f"{own:.0f} ms")
             row("slider to repaint, 95 %, alone", "100 ms", f"{percentile(times):.0f} ms")
             resting = memory(parent)

@@ -34,6 +34,7 @@ ARGUMENTS = {  # of every command that writes: the least that it takes, in.dat b
     "uncertainty": (INPUT,),
     "optimise": (INPUT, "--target-friction", "0.15"),
     "control": (INPUT,),
+    "export fmu": (INPUT,),
     "efficiency": (INPUT, "--rig", "rig.toml"),
     "horn design": (INPUT, "--frequency", "20kHz", "--material", "titanium_6al4v"),
     "horn face": ("steel",),
