@@ -146,10 +146,15 @@ class RigInputs:
 def rig_inputs(rig: Rig | ResolvedRig, *, takes_plane: bool = False) -> RigInputs:
     """Inputs of a prediction from a rig file: its own distributions where it has them, else usual ones.
 
-    A vibration within the plane is refused but for `takes_plane`.
+    A vibration within the plane is refused but for `takes_plane`, and so are friction models of soft bodies.
     """
     resolved = resolved_rig(rig)
     rig = resolved.rig
+    if rig.friction_model.for_soft_bodies:
+        raise InvalidInput(
+            f"{rig.title}: this rests on tests of hard bodies, and friction model {rig.friction_model.name} is of a soft"
+            " or floating contact; use friction, which gives the theory"
+        )
     if not (rig.direction.is_normal or (takes_plane and is_predicted(rig.direction))):
         raise InvalidInput(within_plane_refusal(rig))
     if rig.drive is None:

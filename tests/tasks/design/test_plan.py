@@ -56,3 +56,9 @@ def test_arguments_are_refused_by_their_names(rigs: Path) -> None:
         plan(path, vibration="1um", voltage="3V")
     with raises(InvalidInput, match=r"^points must be finite and lie between 1 and inf, got 0"):
         plan(path, points=0)
+
+
+def test_a_plan_for_a_soft_body_is_refused_in_one_line(rigs: Path) -> None:
+    with raises(InvalidInput, match="rests on tests of hard bodies, and friction model soft_layer") as refused:
+        plan(rigs / "pom_on_steel.toml", **FEW)
+    assert "\n" not in str(refused.value)
