@@ -152,8 +152,8 @@ def rig_inputs(rig: Rig | ResolvedRig, *, takes_plane: bool = False) -> RigInput
     rig = resolved.rig
     if rig.friction_model.for_soft_bodies:
         raise InvalidInput(
-            f"{rig.title}: this rests on tests of hard bodies, and friction model {rig.friction_model.name} is of a soft"
-            " or floating contact; use friction, which gives the theory"
+            f"{rig.title}: this rests on tests of hard bodies, and friction model {rig.friction_model.name} is of a"
+            " soft or floating contact; use friction, which gives the theory"
         )
     if not (rig.direction.is_normal or (takes_plane and is_predicted(rig.direction))):
         raise InvalidInput(within_plane_refusal(rig))
