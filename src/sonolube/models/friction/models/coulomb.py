@@ -54,8 +54,8 @@ class Coulomb(FrictionModel):
         """Ratio at positive speeds, shape (n,)."""
         force_ratio = motion.normal_force / motion.normal_load
         if motion.along is None and motion.across is None:
-            mean = float(force_ratio.mean())
-            return np.full(v_r.shape, 1.0 if abs(mean - 1) <= _SAME else mean)  # the load balances but for rounding
+            level = float(force_ratio.mean())
+            return np.full(v_r.shape, 1.0 if abs(level - 1) <= _SAME else level)  # the load balances but for rounding
         straight = _straight_vibration(motion)
         if straight is not None and np.ptp(force_ratio) <= _SAME:
             velocity, angle = straight
