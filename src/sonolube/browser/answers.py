@@ -4,7 +4,7 @@ import base64
 import binascii
 import os
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
 from pathlib import Path, PurePath
@@ -271,5 +271,18 @@ def _block_object(block: Block) -> dict[str, Any]:
     return {"kind": "text", "text": block.strip()}
 
 
-Answering = Callable[[Mapping[str, Any], Places], dict[str, Any]]
-"""Answers one kind of request."""
+def task_answer(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
+    """Answer of a task."""
+    task, arguments = offered_task(str(payload.get("task", ""))), payload.get("arguments") or {}
+    return answered(task, arguments, places, has_tables=payload.get("tables", True))
+
+
+def description(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
+    """OpenAPI description of the tasks."""
+    from sonolube.tasks.openapi import tasks_description
+
+    del payload, places
+    offered = {f"/tasks/{task.name.replace(' ', '/')}" for task in offered_tasks()}
+    content = tasks_description()
+    paths = {f"/api{path}": each for path, each in content["paths"].items() if path in offered}
+    return content | {"paths": paths}

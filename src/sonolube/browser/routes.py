@@ -23,10 +23,11 @@ from starlette.routing import Route
 
 from sonolube.browser.first_page import shipped_answer
 from sonolube.browser.jobs import KEPT_DAYS, Jobs
+from sonolube.browser.kinds import VIEWS
 from sonolube.browser.places import Places
 from sonolube.browser.uploads import Uploads
 from sonolube.browser.worker import Pool
-from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.errors import InvalidInput, SonolubeError, UnknownName
 
 _FOLDER: Final = Path(str(files("sonolube.browser"))) / "static"
 _KINDS: Final = MappingProxyType(
@@ -99,8 +100,6 @@ class Workbench:
             Route("/", self._page),
             Route("/api/start", self._start),
             Route("/api/description", self._description, methods=["GET"]),
-            Route("/api/rig", self._rig, methods=["POST"]),
-            Route("/api/take", self._take, methods=["POST"]),
             Route("/api/tasks/{name:path}", self._task, methods=["POST"]),
             Route("/api/uploads", self._upload, methods=["POST"]),
             Route("/api/jobs", self._list_jobs, methods=["GET"]),
@@ -110,6 +109,7 @@ class Workbench:
             Route("/api/jobs/{id}/cancel", self._cancel_job, methods=["POST"]),
             Route("/api/jobs/{id}/result", self._job_result, methods=["GET"]),
             Route("/api/jobs/{id}/files/{name:path}", self._job_file, methods=["GET"]),
+            Route("/api/{kind}", self._view, methods=["POST"]),
             Route("/static/{name:path}", static_file, methods=["GET"]),
         ]
         middleware = [Middleware(GZipMiddleware, minimum_size=500, compresslevel=4)]
@@ -132,13 +132,12 @@ class Workbench:
         """OpenAPI description of the tasks."""
         return await self._ask("description", {}, request)
 
-    async def _rig(self, request: Request) -> Response:
-        """Fields and drawing of a rig."""
-        return await self._ask("rig", await _content(request), request)
-
-    async def _take(self, request: Request) -> Response:
-        """File to take away."""
-        return await self._ask("take", await _content(request), request)
+    async def _view(self, request: Request) -> Response:
+        """What a page shows beside the answers of tasks, such as the fields of a rig, or a file to take away."""
+        kind = request.path_params["kind"]
+        if kind not in VIEWS:
+            raise UnknownName.among(list(VIEWS), kind="view", name=kind)
+        return await self._ask(kind, await _content(request), request)
 
     async def _task(self, request: Request) -> Response:
         """Answer of a task; `?tables=no` leaves out the tables of its charts, as while a slider moves."""

@@ -5,7 +5,19 @@ import {Button, capital, Loading, Refusal, Select, Sheet, useEvents, Warning} fr
 import {addressOf, followAddress, PAGES, redo, stored, undo, useApp} from './state.js';
 import {TakeAway} from './take-away.js';
 
-const read = (page) => import(`./pages/${page === 'new' ? 'new-rig' : page}.js`);
+/** Pages with styles of their own, in `pages/` beside the scripts. */
+const STYLED = new Set(['data', 'modes', 'design', 'lab']);
+
+/** Module of a page, read with its styles. */
+function read(page) {
+  const module = import(`./pages/${page === 'new' ? 'new-rig' : page}.js`);
+  if (!STYLED.delete(page)) return module;
+  const link = Object.assign(document.createElement('link'), {rel: 'stylesheet', href: `static/pages/${page}.css`});
+  const styles = new Promise((done) => Object.assign(link, {onload: done, onerror: done}));
+  document.head.append(link);
+  return styles.then(() => module);
+}
+
 const THEMES = ['system', 'light', 'dark'];
 const THEME_KEY = 'sonolube-theme';
 const storedTheme = () => stored('localStorage', THEME_KEY) ?? THEMES[0];

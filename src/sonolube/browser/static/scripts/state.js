@@ -8,7 +8,10 @@
 import {useLayoutEffect, useState} from '../vendor/htm-preact-3.1.1.js';
 
 /** Pages by their names in an address, with their titles. */
-export const PAGES = {predict: 'Predict', explore: 'Explore', dissertation: 'Dissertation', jobs: 'Jobs', new: 'New rig'};
+export const PAGES = {
+  predict: 'Predict', explore: 'Explore', data: 'Data', modes: 'Modes', design: 'Design', lab: 'Lab', jobs: 'Jobs',
+  dissertation: 'Dissertation', new: 'New rig',
+};
 const STEPS = 100; // of undo
 const LONGEST_TEXT = 8192; // characters of a compressed rig file that a link holds
 const KEPT_PREFIX = 'kept-';
