@@ -3,14 +3,25 @@
 import secrets
 import shutil
 import tempfile
-from collections.abc import AsyncIterator
-from pathlib import Path
-from typing import Final
+from collections.abc import AsyncIterator, Mapping
+from pathlib import Path, PurePath
+from typing import Any, Final
 
+from sonolube.browser.places import Places
 from sonolube.errors import InvalidInput
 
 _LARGEST: Final = 256 * 2**20  # bytes of one file
 _MOST: Final = 4 * _LARGEST  # of all files, beyond which the oldest go
+
+
+def uploaded(file: Any, places: Places) -> tuple[str, Path]:
+    """Name and path of an uploaded file of a request."""
+    if not isinstance(file, Mapping) or not all(isinstance(file.get(key), str) for key in ("name", "upload")):
+        raise InvalidInput("file: give an object with the name and the upload of a file", key="file")
+    path = Path(places.uploads, PurePath(file["upload"]).name)
+    if not places.uploads or not file["upload"].isalnum() or not path.is_file():
+        raise InvalidInput(f"file: {file['name'][:80]!r} is no longer here; drop the file again", key="file")
+    return PurePath(file["name"].replace("\\", "/")).name.lstrip(".") or "file", path
 
 
 class Uploads:
