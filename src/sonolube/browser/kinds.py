@@ -10,6 +10,8 @@ Answering = Callable[[Mapping[str, Any], Places], dict[str, Any]]
 """Answers one kind of request."""
 
 VIEWS: Final = {
+    "file": "sonolube.browser.recording_view:file_view",
+    "recording": "sonolube.browser.recording_view:recording_view",
     "rig": "sonolube.browser.rig_view:rig_view",
     "take": "sonolube.browser.take_away:taken",
 }
@@ -17,10 +19,6 @@ VIEWS: Final = {
 
 KINDS: VariantTable[Answering] = VariantTable(
     "kind of request",
-    {
-        "task": "sonolube.browser.answers:task_answer",
-        "description": "sonolube.browser.answers:description",
-        **VIEWS,
-    },
+    {"task": "sonolube.browser.answers:task_answer", "description": "sonolube.browser.answers:description", **VIEWS},
 )
 """Functions that answer each kind of request."""
