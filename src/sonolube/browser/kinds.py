@@ -10,6 +10,8 @@ Answering = Callable[[Mapping[str, Any], Places], dict[str, Any]]
 """Answers one kind of request."""
 
 VIEWS: Final = {
+    "file": "sonolube.browser.recording_view:file_view",
+    "recording": "sonolube.browser.recording_view:recording_view",
     "scan": "sonolube.browser.scan_view:scan_view",
     "section": "sonolube.browser.scan_view:section_view",
     "rig": "sonolube.browser.rig_view:rig_view",

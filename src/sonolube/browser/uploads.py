@@ -24,6 +24,11 @@ def uploaded(file: Any, places: Places) -> tuple[str, Path]:
     return PurePath(file["name"].replace("\\", "/")).name.lstrip(".") or "file", path
 
 
+def companion(upload: Path, name: str) -> Path:
+    """Path of what is kept beside an upload, and goes with it."""
+    return upload.with_name(f"{upload.name}.{name}")
+
+
 class Uploads:
     """Uploaded files.
 
@@ -62,13 +67,15 @@ class Uploads:
 
     def _forget_oldest(self) -> None:
         """Delete the oldest files beyond the limit of all."""
-        files = sorted(self.folder.iterdir(), key=lambda path: path.stat().st_mtime_ns)
+        files = sorted(self.folder.glob("[!.]*"), key=lambda path: path.stat().st_mtime_ns)
         total = sum(path.stat().st_size for path in files)
-        for path in files[:-1]:
+        uploads = [path for path in files if not path.suffix]
+        for upload in uploads[:-1]:
             if total <= _MOST:
                 return
-            total -= path.stat().st_size
-            path.unlink(missing_ok=True)
+            for path in [each for each in files if each.name.partition(".")[0] == upload.name]:
+                total -= path.stat().st_size
+                path.unlink(missing_ok=True)
 
     def end(self) -> None:
         """Delete all files."""
