@@ -75,8 +75,10 @@ def section_chart(
     known = found.height[np.isfinite(found.height)]
     facts = [
         ("Length", format_si(float(found.distance[-1]), "m", digits=4)),
-        ("Points", f"{found.distance.size}, {found.distance.size - known.size} of them missing"),
+        ("Points", f"{found.distance.size}"),
     ]
+    if known.size < found.distance.size:
+        facts.append(("Of them missing", f"{found.distance.size - known.size}"))
     if known.size:
         facts += [
             ("Lowest to highest", format_si(float(np.ptp(known)), "m", digits=4)),
