@@ -4,7 +4,10 @@ from pathlib import Path
 
 import numpy as np
 
+from sonolube.example_files import example_file
 from sonolube.models.actuator import ButterworthVanDyke, MotionalBranch, circuit_admittance
+from sonolube.models.dynamics import electrical_admittance
+from sonolube.rig import read_rig, structure_by_stack
 
 SPACING = 5e-6
 GROOVE_DEPTH, GROOVE_WIDTH = 4e-6, 300e-6
@@ -34,10 +37,21 @@ def write_groove(folder: Path) -> Path:
 
 def write_spectrum(folder: Path) -> Path:
     """Spectrum of the circuit with noise of half a percent."""
-    rng = np.random.default_rng(6)
     f = np.linspace(120e3, 220e3, 401)
-    z = 1 / circuit_admittance(CIRCUIT, frequency=f) * np.exp(0.005 * rng.standard_normal(f.size))
+    return _write(folder / "transducer.csv", f, circuit_admittance(CIRCUIT, frequency=f))
+
+
+def write_stack_spectrum(folder: Path) -> Path:
+    """Spectrum of the structure of the tribometer with its stack, with noise of half a percent."""
+    f = np.linspace(5e3, 60e3, 401)
+    stack, in_structure = structure_by_stack(read_rig(example_file("tribometer").source))
+    return _write(folder / "holder.csv", f, electrical_admittance(in_structure(stack), frequency=f))
+
+
+def _write(path: Path, f: np.ndarray, admittance: np.ndarray) -> Path:
+    """Columns of frequency, magnitude and phase of the impedance."""
+    rng = np.random.default_rng(6)
+    z = 1 / admittance * np.exp(0.005 * rng.standard_normal(f.size))
     columns = np.stack([f, np.abs(z), np.degrees(np.angle(z))], 1)
-    path = folder / "transducer.csv"
     np.savetxt(path, columns, delimiter=",", header="frequency (Hz),|Z| (ohm),phase (deg)", comments="", fmt="%.9g")
     return path

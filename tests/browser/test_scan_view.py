@@ -1,4 +1,4 @@
-"""Scans as the page Data shows them: brute force and closed forms beside what the view gives, and bad files in one line."""
+"""Scans as the page Data shows them, beside brute force and closed forms; bad files in one line."""
 
 import shutil
 from pathlib import Path
@@ -137,7 +137,15 @@ def test_what_is_wrong_is_refused_in_one_line(
 
 
 ENDINGS = (".npy", ".opd", ".nms", ".xyz", ".sur", ".x3p", ".al3d", ".dat", ".opdx", ".csv")
-STARTS = (b"", b"\x93NUMPY\x01\x00", b"\x01\x00Directory", b"PK\x03\x04", b"AliconaImaging\x00", b"DIGITAL SURF", b"1 2 3\n")
+STARTS = (
+    b"",
+    b"\x93NUMPY\x01\x00",
+    b"\x01\x00Directory",
+    b"PK\x03\x04",
+    b"AliconaImaging\x00",
+    b"DIGITAL SURF",
+    b"1 2 3\n",
+)
 
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # files left open by readers of others

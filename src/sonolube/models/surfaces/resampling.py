@@ -21,7 +21,7 @@ class BlockMeans:
     Parameters
     ----------
     x, y : ndarray, shape (columns,) and (rows,)
-        Centres of the blocks, from the centre of the first pixel. [m]
+        Centres of the blocks in m, from the centre of the first pixel.
     height : ndarray, shape (rows, columns)
         Mean of the measured pixels; NaN where a block has none. [m]
     size : tuple of int
@@ -84,7 +84,7 @@ class LineSection:
     Parameters
     ----------
     distance : ndarray, shape (n,)
-        From the start, in even steps of at most the smaller spacing. [m]
+        From the start in m, in even steps of at most the smaller spacing.
     height : ndarray, shape (n,)
         Interpolated between the four pixels around; NaN where one of them that counts is missing. [m]
     """
@@ -100,7 +100,7 @@ def line_section(surface: HeightMap, *, start: Sequence[float], end: Sequence[fl
     ----------
     surface : HeightMap
     start, end : sequence of two float
-        x and y of the ends, from the centre of the first pixel; within half a pixel of the outermost centres. [m]
+        x and y of the ends in m, from the centre of the first pixel; within half a pixel of the outermost centres.
 
     Returns
     -------

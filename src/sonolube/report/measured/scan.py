@@ -73,10 +73,7 @@ def section_chart(
     """Heights along a line, and what is said of them; ends in m."""
     found = line_section(surface, start=start, end=end)
     known = found.height[np.isfinite(found.height)]
-    facts = [
-        ("Length", format_si(float(found.distance[-1]), "m", digits=4)),
-        ("Points", f"{found.distance.size}"),
-    ]
+    facts = [("Length", format_si(float(found.distance[-1]), "m", digits=4)), ("Points", f"{found.distance.size}")]
     if known.size < found.distance.size:
         facts.append(("Of them missing", f"{found.distance.size - known.size}"))
     if known.size:
