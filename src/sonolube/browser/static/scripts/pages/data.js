@@ -1,5 +1,5 @@
 /** Page Data: files of measurements, what each is, its view by its kind, and the results of all in one table. */
-import {html, useEffect, useState} from '../../vendor/htm-preact-3.1.1.js';
+import {html, useEffect, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {Failure, TextTable} from '../answer.js';
 import {addFiles, dropFile, filesOf, setOwn, settingsOf, useInfo, useMeasured} from '../data/files.js';
 import {NOTHING} from '../fields.js';
@@ -8,8 +8,8 @@ import {change, useApp} from '../state.js';
 import {save} from '../take-away.js';
 
 /**
- * Kinds of files: title, and module. A module has as default a component of {file, own, set, info, view}, where `set`
- * changes what is set for this file, and `taskOf(file, own, info)`, which gives what measures it, or null.
+ * Kinds of files: title, and module. A module has `taskOf(file, own, info)`, which gives what measures a file, or null, and as default a
+ * component of {file, own, set, info, asked, view}: what was set for the file, what sets more, what it is, and what measures it at rest.
  */
 const KINDS = {
   recording: ['Recording', () => import('../data/recording.js')],
@@ -54,14 +54,15 @@ function FileLine({file, own, view, isShown, onResult}) {
 }
 
 /** The file that is shown, by its kind. */
-function Shown({file, own, view}) {
+function Shown({file, own, settled, view}) {
   const {content: info, failure} = useInfo(file, own);
   const module = useModule(info?.kind);
   if (!info) return failure ? html`<${Failure} failure=${failure} />` : html`<${Loading}>Reading ${file.name}…<//>`;
   if (module === null) return html`<p class="notice">${KINDS[info.kind][0]}: this workbench has no view of it yet.</p>`;
   if (!module) return html`<${Loading}>Reading the view…<//>`;
   const set = (partial, options) => setOwn(view, file, partial, options);
-  return html`<${module.default} key=${file.upload} file=${file} own=${own} set=${set} info=${info} view=${view} />`;
+  const asked = module.taskOf && !info.reason ? module.taskOf(file, settled, info) : null;
+  return html`<${module.default} key=${file.upload} file=${file} own=${own} set=${set} info=${info} asked=${asked} view=${view} />`;
 }
 
 /** Numbers of an answer as rows of a table in SI: file, part, quantity, value, standard uncertainty, unit. */
@@ -101,7 +102,10 @@ function Results({files, results}) {
 }
 
 export default function Data() {
-  const {state: {view}} = useApp();
+  const {state: {view}, isMoving} = useApp();
+  const rest = useRef(null);
+  if (!isMoving) rest.current = view;
+  const settled = settingsOf(rest.current ?? view); // what is measured waits until a handle rests
   const [note, setNote] = useState('');
   const [results, setResults] = useState({});
   const files = filesOf(view);
@@ -119,9 +123,9 @@ export default function Data() {
     ${files.length === 0 && html`<div class="data-empty"><p>Drop recordings, scans of surfaces, impedance spectra or tables of runs here, several at once.</p>${choose}
       <p class="hint">They stay on this computer, in a folder of the workbench that goes when it ends.</p></div>`}
     ${files.length > 0 && html`<ul class="data-files" aria-label="Files">${files.map((file) => html`<${FileLine} key=${file.upload} file=${file} view=${view}
-      own=${own[file.upload] ?? NOTHING} isShown=${file === shown} onResult=${onResult} />`)}<li>${choose}</li></ul>`}
+      own=${settled[file.upload] ?? NOTHING} isShown=${file === shown} onResult=${onResult} />`)}<li>${choose}</li></ul>`}
     <${Refusal} text=${note} role="status" data-test="data-note" />
-    ${shown && html`<${Shown} key=${shown.upload} file=${shown} own=${own[shown.upload] ?? NOTHING} view=${view} />`}
+    ${shown && html`<${Shown} key=${shown.upload} file=${shown} own=${own[shown.upload] ?? NOTHING} settled=${settled[shown.upload] ?? NOTHING} view=${view} />`}
     <${Results} files=${files} results=${results} />
     ${isDropping && html`<div class="drop" aria-hidden="true">Drop the files here</div>`}
   <//>`;
