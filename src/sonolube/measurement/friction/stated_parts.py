@@ -114,7 +114,8 @@ def _within(time: Floats, spans: "tuple[Span, ...] | list[Span]") -> Mask:
         inside = (time >= begin) & (time <= end)
         if not inside.any():
             raise InvalidInput(
-                f"{begin:.6g} s to {end:.6g} s holds no sample; the recording is from {time[0]:.6g} s to {time[-1]:.6g} s"
+                f"{begin:.6g} s to {end:.6g} s holds no sample; the recording is from {time[0]:.6g} s to"
+                f" {time[-1]:.6g} s"
             )
         found |= inside
     return found

@@ -2,7 +2,7 @@
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -82,7 +82,7 @@ class FrictionSettings:
     sliding_speed: float | None = None
     rotation_speed: float | None = None
     motor: MotorCalibration | None = None
-    parts: StatedParts = StatedParts()
+    parts: StatedParts = field(default_factory=StatedParts)
 
     def __post_init__(self) -> None:
         speeds = {"sliding_speed": self.sliding_speed, "rotation_speed": self.rotation_speed}

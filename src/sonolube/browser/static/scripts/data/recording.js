@@ -83,8 +83,10 @@ export default function Recording({file, own, set, info, asked}) {
   const enter = (some, options) => set({marks: some.length ? some : null}, options);
   const onMark = (mark, end, value, isMoving) => {
     if (!isMoving) return settle();
-    const bounds = end === 'from' ? [-Infinity, mark.to] : [mark.from, Infinity];
-    return enter(marks.map((each, at) => (at === mark.at ? {...each, [end]: Math.min(Math.max(value, bounds[0]), bounds[1])} : each)), {replace: true});
+    const others = marks.filter(({kind}, at) => at !== mark.at && kind === mark.kind);
+    const least = end === 'to' ? mark.from : Math.max(info.begin, ...others.filter(({to}) => to <= mark.to).map(({to}) => to));
+    const most = end === 'from' ? mark.to : Math.min(info.end, ...others.filter(({from}) => from >= mark.from).map(({from}) => from));
+    return enter(marks.map((each, at) => (at === mark.at ? {...each, [end]: Math.min(Math.max(value, least), most)} : each)), {replace: true});
   };
   const wanted = info.channels.map((each, at) => [TASKS[name][1].test(each.name) ? 0 : /voltage|speed|velocity/.test(each.name) ? 1 : 2, at]);
   const shown = own.shown ?? wanted.sort(([one, a], [other, b]) => one - other || a - b).map(([, at]) => at).slice(0, MAX_SHOWN);
