@@ -13,6 +13,8 @@ VIEWS: Final = {
     "file": "sonolube.browser.recording_view:file_view",
     "measured-use": "sonolube.browser.measured_use:measured_use",
     "recording": "sonolube.browser.recording_view:recording_view",
+    "scan": "sonolube.browser.scan_view:scan_view",
+    "section": "sonolube.browser.scan_view:section_view",
     "rig": "sonolube.browser.rig_view:rig_view",
     "take": "sonolube.browser.take_away:taken",
 }

@@ -297,7 +297,12 @@ def _stack(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings, initial: St
         f"Measured, and that of the structure with the stack found by the {fit.residual} residual.",
     )
     figure = captioned(stack_chart)(spectrum, initial.in_structure(fit.stack))
-    return sheet.Sheet(values=values, figures=(figure,), caveats=fit.caveats)
+    known = {name: getattr(fit.stack, name) for name in _FITTED}
+    entries = sheet.rig_entries("stack", known)
+    return sheet.Sheet(values=values, figures=(figure,), caveats=fit.caveats, rig_entries=entries)
+
+
+_FITTED = ("free_capacitance", "free_stroke_per_volt", "stack_stiffness", "stack_damping")  # entries of a rig
 
 
 def _values(intervals: Mapping[str, ConfidenceInterval]) -> tuple[sheet.Value, ...]:
