@@ -1,9 +1,12 @@
 """Where measured numbers go: entries of a rig, and rows of a table of own runs."""
 
+import csv
+import io
 import math
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
+from sonolube import __version__
 from sonolube.browser.places import Places
 from sonolube.browser.uploads import uploaded
 from sonolube.errors import InvalidInput
@@ -63,6 +66,44 @@ def measured_use(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
         "added": len(rows),
         "runs": len(before) + len(rows),
     }
+
+
+def measured_table(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
+    """Numbers of several answers of measurements as one table of comma-separated values, in SI.
+
+    A request has `answers`, a list of objects with `name` (of the file), `task` and `answer` (in JSON).
+    """
+    del places
+    answers = payload.get("answers")
+    if not isinstance(answers, list) or not all(isinstance(each, Mapping) for each in answers):
+        raise InvalidInput("answers: give a list of answers in JSON", key="answers")
+    out = io.StringIO()
+    tasks = ", ".join(dict.fromkeys(str(each.get("task", "")) for each in answers))
+    out.write(f"# sonolube {__version__}: {' '.join(tasks.split())}\n")
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(["file", "part", "quantity", "value", "standard uncertainty", "unit"])
+    for each in answers:
+        answer = each.get("answer")
+        results = answer.get("results") if isinstance(answer, Mapping) else None
+        for result in results if isinstance(results, list) else []:
+            if isinstance(result, Mapping):
+                writer.writerows([str(each.get("name", "")), *row] for row in _numbers(result))
+    return {"csv": out.getvalue()}
+
+
+def _numbers(result: Mapping[str, Any]) -> Iterator[list[Any]]:
+    """Part, quantity, value, standard uncertainty and unit of each number of a result."""
+    values, tables = result.get("values"), result.get("tables")
+    for name, entry in values.items() if isinstance(values, Mapping) else []:
+        if isinstance(entry, Mapping):
+            yield ["", name, entry.get("value"), entry.get("uncertainty"), entry.get("unit")]
+    for table, entry in tables.items() if isinstance(tables, Mapping) else []:
+        units, rows = (entry.get("units"), entry.get("rows")) if isinstance(entry, Mapping) else (None, None)
+        for number, row in enumerate(rows if isinstance(rows, list) else [], start=1):
+            for name, value in row.items() if isinstance(row, Mapping) else []:
+                if value is not None:
+                    unit = units.get(name) if isinstance(units, Mapping) else None
+                    yield [f"{table} {number}", name, value, None, unit]
 
 
 def _quantity(name: str, text: Any) -> float:

@@ -1,4 +1,4 @@
-"""Parts of a friction recording as its user states them: what is measured, where the surfaces rest, steps of a voltage."""
+"""Parts of a friction recording as stated: what is measured, where the surfaces rest, steps of a voltage."""
 
 from dataclasses import dataclass
 from itertools import pairwise

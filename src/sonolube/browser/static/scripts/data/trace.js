@@ -6,7 +6,7 @@
  */
 import {html, useEffect, useLayoutEffect, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {ask} from '../api.js';
-import {along, roundTicks, short, themeOf} from '../chart-scale.js';
+import {along, extent, roundTicks, short, themeOf} from '../chart-scale.js';
 import {Refusal, useEvents} from '../parts.js';
 
 const [ROW, BAR, LEFT, RIGHT, BOTTOM, GAP] = [132, 46, 64, 10, 24, 12]; // px
@@ -25,8 +25,7 @@ function useViews(file, mapping, [from, to]) {
   const look = async () => {
     if (isAsking.current) return;
     isAsking.current = true;
-    while (wanted.current) {
-      const part = wanted.current;
+    for (let part = wanted.current; part; part = wanted.current) {
       wanted.current = null;
       const {content} = await view(part);
       if (content) setViews((old) => ({...old, near: {...content, ...part}}));
@@ -43,28 +42,16 @@ function useViews(file, mapping, [from, to]) {
 }
 
 /** Times and values of a channel that a window shows, each with a neighbour. */
-function pointsOf(view, channel, [from, to]) {
-  const after = (value) => {
-    let [low, high] = [0, view.x.length];
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if (view.x[middle] < value) low = middle + 1;
-      else high = middle;
-    }
-    return low;
-  };
-  const part = [Math.max(after(from) - 1, 0), after(to) + 1];
-  return [view.x.slice(...part), view.channels[channel].slice(...part)];
+function pointsOf({x, channels}, channel, [from, to]) {
+  const [first, last] = [x.findIndex((value) => value >= from), x.findIndex((value) => value > to)];
+  const part = [Math.max((first < 0 ? x.length : first) - 1, 0), last < 0 ? x.length : last + 1];
+  return [x.slice(...part), channels[channel].slice(...part)];
 }
 
 /** Scale on which values fill a height up from its bottom, with a margin. */
 function scaleOf(values, bottom, height) {
-  let [low, high] = [Infinity, -Infinity];
-  for (const value of values) {
-    if (value !== null && value < low) low = value;
-    if (value !== null && value > high) high = value;
-  }
-  if (low > high) [low, high] = [0, 1];
+  const [low, high] = extent(values);
+  if (low > high) return along({}, [0, 1], bottom, -height);
   const room = 0.06 * (high - low) || Math.abs(high) * 0.05 || 1;
   return along({}, [low - room, high + room], bottom, -height);
 }
