@@ -17,6 +17,9 @@ _SHORTEST_REST: Final = 0.2  # s, up to which a rest is the reversal of a stroke
 _VOLTS: Final = {"units": "V"}
 _SPEEDS: Final = ("relative_velocity", "sliding_speed", "rotation_speed", "sliding_speed_set", "motor_on")
 
+STATED_STEP: Final = "stated_step"
+"""Channel of the number of the stated step at each sample, 0 for none."""
+
 Span = tuple[float, float]
 """First and last time of a part. [s]"""
 
@@ -33,7 +36,7 @@ class StatedParts:
         Where the surfaces rest.
     steps : tuple of (Span, float)
         Steps with their voltage, peak to peak, in V; in place of the recorded voltage, and what is in none of them is
-        left out. Steps of one voltage that follow each other count as one.
+        left out.
 
     Raises
     ------
@@ -72,7 +75,7 @@ def with_stated_parts(recording: "xr.Dataset", stated: StatedParts) -> "xr.Datas
     Returns
     -------
     xarray.Dataset
-        Rest is told by `motor_on` where no speed is recorded.
+        Rest is told by `motor_on` where no speed is recorded, and steps by `STATED_STEP`.
 
     Raises
     ------
@@ -91,20 +94,25 @@ def with_stated_parts(recording: "xr.Dataset", stated: StatedParts) -> "xr.Datas
         usual = np.ones(time.size)
         added = {name: recording[name].to_numpy() if name in recording else usual for name in known}
         added = {name: ("time", np.where(rest, 0.0, values)) for name, values in added.items()}
-    kept = np.ones(time.size, bool)
     if stated.steps:
-        voltage = np.full(time.size, np.nan)
-        for span, each in stated.steps:
-            voltage[_within(time, [span])] = each
-        kept = rest | np.isfinite(voltage)
-        added["voltage_peak_to_peak"] = ("time", voltage)
-    if stated.part:
-        kept &= _within(time, [stated.part])
-        if not kept.any():
-            raise InvalidInput("the part that is measured holds none of the stated steps")
+        number, voltage = np.zeros(time.size), np.full(time.size, np.nan)
+        for place, (span, each) in enumerate(stated.steps, start=1):
+            inside = _within(time, [span])
+            number[inside], voltage[inside] = place, each
+        added |= {"voltage_peak_to_peak": ("time", voltage), STATED_STEP: ("time", number)}
+        if "friction_force" in recording and not any(name in recording for name in _SPEEDS):  # which tell rest
+            known = np.where(rest | (number > 0), recording["friction_force"].to_numpy(), np.nan)
+            added["friction_force"] = ("time", known)
     attributes = {name: recording[name].attrs for name in added if name in recording} | {"voltage_peak_to_peak": _VOLTS}
     changed = recording.assign({name: (*values, attributes.get(name, {})) for name, values in added.items()})
-    return changed.isel(time=kept).assign_attrs({"rest": "as stated"} if stated.rests else {})
+    if stated.rests:
+        changed = changed.assign_attrs(rest="as stated")
+    if stated.part is None:
+        return changed
+    kept = _within(time, [stated.part])
+    if stated.steps and not (number[kept] > 0).any():
+        raise InvalidInput("the part that is measured holds none of the stated steps")
+    return changed.isel(time=kept)
 
 
 def _within(time: Floats, spans: "tuple[Span, ...] | list[Span]") -> Mask:

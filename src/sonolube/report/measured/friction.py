@@ -14,7 +14,7 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.friction.loops import friction_work
 from sonolube.measurement.friction.rotation import MotorCalibration
 from sonolube.measurement.friction.sliding import NOISE_VOLTAGE, Mask, stretches
-from sonolube.measurement.friction.stated_parts import StatedParts, with_stated_parts
+from sonolube.measurement.friction.stated_parts import STATED_STEP, StatedParts, with_stated_parts
 from sonolube.measurement.friction.windows import (
     DEFAULT_WINDOW_DURATION,
     SteadyStateOnset,
@@ -143,7 +143,8 @@ def _sections(recording: "xr.Dataset", settings: FrictionSettings) -> list[sheet
         windows = analyse_windows(recording, of=name, window_duration=settings.window_duration)
         return [_mean_of_all(recording, name), _windows(recording, windows, None)]
     whole, rest = recording, recorded_rest(recording)
-    recording = whole.assign(friction_force=whole["friction_force"].where(~rest)) if rest.any() else whole
+    left_out = rest | (whole[STATED_STEP].to_numpy() == 0) if STATED_STEP in whole else rest
+    recording = whole.assign(friction_force=whole["friction_force"].where(~left_out)) if left_out.any() else whole
     windows = analyse_windows(recording, of=name, window_duration=settings.window_duration)
     sections = [_level(whole, recording), *_rest_caveat(whole, rest)]
     steady = None
