@@ -11,6 +11,8 @@ Answering = Callable[[Mapping[str, Any], Places], dict[str, Any]]
 
 VIEWS: Final = {
     "file": "sonolube.browser.recording_view:file_view",
+    "measured-table": "sonolube.browser.measured_use:measured_table",
+    "measured-use": "sonolube.browser.measured_use:measured_use",
     "recording": "sonolube.browser.recording_view:recording_view",
     "scan": "sonolube.browser.scan_view:scan_view",
     "section": "sonolube.browser.scan_view:section_view",

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Final
 
-from sonolube.errors import InvalidInput
+from sonolube.errors import InvalidInput, UnknownName
 from sonolube.measurement.recordings.channels_and_parts import TIME_LABELS, name_and_unit
 from sonolube.measurement.recordings.mapping import AXIS_QUANTITIES, ChannelSource, RecordingMapping
 from sonolube.measurement.recordings.raw_table import numbered_labels
@@ -142,7 +142,7 @@ def _meaning(text: str, label: str) -> RunHeading | str:
     """Meaning of a statement, refused by its label."""
     try:
         return meaning(text, label)
-    except InvalidInput as failure:
+    except (InvalidInput, UnknownName) as failure:
         raise InvalidInput(str(failure), key=label) from None
 
 

@@ -49,7 +49,7 @@ function UseInRig({entries, note}) {
  */
 export function Measured({file, asked, fields, own, set, leave = [], rigNote, children}) {
   const {content, failure, isWaiting} = useMeasured(file, asked);
-  useEffect(() => offer(asked.task, asked.args), [JSON.stringify(asked)]);
+  useEffect(() => (asked ? offer(asked.task, asked.args) : undefined), [JSON.stringify(asked)]);
   const isOld = isWaiting || Boolean(failure);
   const charts = (content?.charts ?? []).filter(({name, chart}) => chart && !leave.includes(name));
   const entries = content?.answer.results[0]?.rig_entries;

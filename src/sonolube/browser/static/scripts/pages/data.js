@@ -1,6 +1,7 @@
 /** Page Data: files of measurements, what each is, its view by its kind, and the results of all in one table. */
-import {html, useEffect, useState} from '../../vendor/htm-preact-3.1.1.js';
+import {html, useEffect, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {Failure, TextTable} from '../answer.js';
+import {ask} from '../api.js';
 import {addFiles, dropFile, filesOf, setOwn, settingsOf, useInfo, useMeasured} from '../data/files.js';
 import {NOTHING} from '../fields.js';
 import {Button, Card, classes, FileButton, Loading, Refusal, Sheet, useDrop} from '../parts.js';
@@ -8,8 +9,8 @@ import {change, useApp} from '../state.js';
 import {save} from '../take-away.js';
 
 /**
- * Kinds of files: title, and module. A module has as default a component of {file, own, set, info, view}, where `set`
- * changes what is set for this file, and `taskOf(file, own, info)`, which gives what measures it, or null.
+ * Kinds of files: title, and module. A module has `taskOf(file, own, info)`, which gives what measures a file, or null, and as default a
+ * component of {file, own, set, info, asked, view}: what was set for the file, what sets more, what it is, and what measures it at rest.
  */
 const KINDS = {
   recording: ['Recording', () => import('../data/recording.js')],
@@ -34,9 +35,6 @@ function useModule(kind) {
   return modules.get(kind);
 }
 
-/** Size as text. @param {number} bytes */
-const sizeText = (bytes) => (bytes < 1e5 ? `${(bytes / 1e3).toFixed(1)} kB` : `${(bytes / 1e6).toFixed(1)} MB`);
-
 /** Line of a file in the list: its name, what it is, and what leaves it out; measures it and tells its result. */
 function FileLine({file, own, view, isShown, onResult}) {
   const {content: info, failure, isWaiting} = useInfo(file, own);
@@ -45,7 +43,7 @@ function FileLine({file, own, view, isShown, onResult}) {
   const measured = useMeasured(file, asked);
   useEffect(() => onResult(file.upload, asked && measured.content ? {asked, content: measured.content} : null), [measured.content, asked === null]);
   const isBusy = isWaiting || measured.isWaiting || (info && module === undefined);
-  const state = failure ? 'cannot be read' : !info ? 'reading…' : [KINDS[info.kind][0], sizeText(info.bytes), info.reason && 'needs its columns',
+  const state = failure ? 'cannot be read' : !info ? 'reading…' : [KINDS[info.kind][0], `${(info.bytes / 1e6).toPrecision(2)} MB`, info.reason && 'needs its columns',
     isBusy && 'measuring…', measured.failure && 'refused'].filter(Boolean).join(', ');
   return html`<li class=${classes('data-file', {'is-shown': isShown})} aria-busy=${Boolean(isBusy)}>
     <${Button} kind="data-name" aria-pressed=${isShown} onClick=${() => change({view: {file: file.upload}})} data-test=${`file:${file.name}`}>
@@ -54,26 +52,16 @@ function FileLine({file, own, view, isShown, onResult}) {
 }
 
 /** The file that is shown, by its kind. */
-function Shown({file, own, view}) {
+function Shown({file, own, settled, view}) {
   const {content: info, failure} = useInfo(file, own);
   const module = useModule(info?.kind);
   if (!info) return failure ? html`<${Failure} failure=${failure} />` : html`<${Loading}>Reading ${file.name}…<//>`;
   if (module === null) return html`<p class="notice">${KINDS[info.kind][0]}: this workbench has no view of it yet.</p>`;
   if (!module) return html`<${Loading}>Reading the view…<//>`;
   const set = (partial, options) => setOwn(view, file, partial, options);
-  return html`<${module.default} key=${file.upload} file=${file} own=${own} set=${set} info=${info} view=${view} />`;
+  const asked = module.taskOf && !info.reason ? module.taskOf(file, settled, info) : null;
+  return html`<${module.default} key=${file.upload} file=${file} own=${own} set=${set} info=${info} asked=${asked} view=${view} />`;
 }
-
-/** Numbers of an answer as rows of a table in SI: file, part, quantity, value, standard uncertainty, unit. */
-function numbersOf(name, {results = []}) {
-  return results.flatMap(({title, values = {}, tables = {}}) => [
-    ...Object.entries(values).map(([quantity, {value, unit, uncertainty}]) => [title || name, '', quantity, value, uncertainty ?? '', unit]),
-    ...Object.entries(tables).flatMap(([table, {units, rows}]) => rows.flatMap((row, at) => Object.entries(row).filter(([, value]) => value !== null)
-      .map(([quantity, value]) => [title || name, `${table} ${at + 1}`, quantity, value, '', units?.[quantity] ?? '']))),
-  ]);
-}
-
-const quoted = (cell) => (/[",\n]/.test(String(cell)) ? `"${String(cell).replaceAll('"', '""')}"` : String(cell));
 
 /** Results of all files: their quantities in one table, and tables of the same columns one below the other. */
 function Results({files, results}) {
@@ -88,12 +76,10 @@ function Results({files, results}) {
       groups.set(key, {heads, rows: [...(groups.get(key)?.rows ?? []), ...block.rows.map((row) => [name, ...row])]});
     }
   }
-  const take = () => {
-    const {version} = results[known[0].upload].content.answer;
-    const tasks = [...new Set(known.map(({upload}) => results[upload].asked.task))].join(', ');
-    const rows = known.flatMap(({name, upload}) => numbersOf(name, results[upload].content.answer));
-    const lines = [['file', 'part', 'quantity', 'value', 'standard uncertainty', 'unit'], ...rows].map((row) => row.map(quoted).join(','));
-    save({name: 'results.csv', kind: 'text/csv', text: `# sonolube ${version}: ${tasks}\n${lines.join('\n')}\n`});
+  const take = async () => {
+    const answers = known.map(({name, upload}) => ({name, task: results[upload].asked.task, answer: results[upload].content.answer}));
+    const {content} = await ask('api/measured-table', {body: {answers}});
+    if (content) save({name: 'results.csv', kind: 'text/csv', text: content.csv});
   };
   return html`<${Card} id="results-title" title="Results of all files" data-test="results">
     ${[...groups.values()].map(({heads, rows}) => html`<${TextTable} key=${heads.join()} heads=${['File', ...heads]} rows=${rows} />`)}
@@ -101,7 +87,10 @@ function Results({files, results}) {
 }
 
 export default function Data() {
-  const {state: {view}} = useApp();
+  const {state: {view}, isMoving} = useApp();
+  const rest = useRef(null);
+  if (!isMoving) rest.current = view;
+  const settled = settingsOf(rest.current ?? view); // what is measured waits until a handle rests
   const [note, setNote] = useState('');
   const [results, setResults] = useState({});
   const files = filesOf(view);
@@ -119,9 +108,9 @@ export default function Data() {
     ${files.length === 0 && html`<div class="data-empty"><p>Drop recordings, scans of surfaces, impedance spectra or tables of runs here, several at once.</p>${choose}
       <p class="hint">They stay on this computer, in a folder of the workbench that goes when it ends.</p></div>`}
     ${files.length > 0 && html`<ul class="data-files" aria-label="Files">${files.map((file) => html`<${FileLine} key=${file.upload} file=${file} view=${view}
-      own=${own[file.upload] ?? NOTHING} isShown=${file === shown} onResult=${onResult} />`)}<li>${choose}</li></ul>`}
+      own=${settled[file.upload] ?? NOTHING} isShown=${file === shown} onResult=${onResult} />`)}<li>${choose}</li></ul>`}
     <${Refusal} text=${note} role="status" data-test="data-note" />
-    ${shown && html`<${Shown} key=${shown.upload} file=${shown} own=${own[shown.upload] ?? NOTHING} view=${view} />`}
+    ${shown && html`<${Shown} key=${shown.upload} file=${shown} own=${own[shown.upload] ?? NOTHING} settled=${settled[shown.upload] ?? NOTHING} view=${view} />`}
     <${Results} files=${files} results=${results} />
     ${isDropping && html`<div class="drop" aria-hidden="true">Drop the files here</div>`}
   <//>`;
