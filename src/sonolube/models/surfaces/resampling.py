@@ -123,7 +123,7 @@ def line_section(surface: HeightMap, *, start: Sequence[float], end: Sequence[fl
     length = float(math.dist(*ends))
     if length == 0:
         raise InvalidInput("section: both ends are the same point; move one of them")
-    share = np.linspace(0.0, 1.0, math.ceil(length / steps.min() - 1e-9) + 1)
+    share = np.linspace(0.0, 1.0, max(1, math.ceil(length / steps.min() - 1e-9)) + 1)
     places = np.clip((ends[0] + share[:, None] * (ends[1] - ends[0])) / steps, 0, counts - 1)
     low = np.minimum(places.astype(np.intp), np.maximum(counts - 2, 0))
     high = np.minimum(low + 1, counts - 1)
