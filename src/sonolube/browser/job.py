@@ -4,10 +4,12 @@ import json
 import sys
 import time
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sonolube.browser.answers import answer_object, called, given_arguments, offered_task
+from sonolube.browser.made_by import made_by, marked
 from sonolube.browser.places import Places
 from sonolube.browser.worker import encoded, limit_process
 from sonolube.errors import SonolubeError
@@ -51,8 +53,10 @@ def main(folder: Path) -> None:
         with given_arguments(task, request["arguments"], Places(**request["places"])) as given:
             watch = {"progress": record.progress} if "progress" in marks_of(task.function) else {}
             answer = called(task, given | watch)
-            names = write_files(answer.files(), folder=folder / "files")
-            write_atomically(folder / "result.json", encoded(answer_object(answer) | {"files": names}).decode())
+            line = made_by(task, request["arguments"])
+            names = write_files(answer.files(), folder=folder / "files", line=line)
+            more = {"files": names, "made_by": line}
+            write_atomically(folder / "result.json", encoded(answer_object(answer) | more).decode())
     except SonolubeError as failure:
         record.write("refused", reason=str(failure))
     except MemoryError:
@@ -61,17 +65,26 @@ def main(folder: Path) -> None:
         record.write("done")
 
 
-def write_files(contents: "Mapping[str, Content]", *, folder: Path) -> list[str]:
-    """Write the files of an answer, and return their names."""
+def write_files(contents: "Mapping[str, Content]", *, folder: Path, line: str) -> list[str]:
+    """Write the files of an answer, each with a line on what it is of, and return their names."""
     from sonolube.rig import write_netcdf
 
     for name, content in contents.items():
         path = folder / name
         if isinstance(content, str | bytes | Path):
-            write_atomically(path, content.read_bytes() if isinstance(content, Path) else content)
+            write_atomically(path, marked(name, content.read_bytes() if isinstance(content, Path) else content, line))
         else:
-            write_netcdf(content, path=path)
+            write_netcdf(_with_line(content, line), path=path)
     return list(contents)
+
+
+def _with_line(content: Any, line: str) -> Any:
+    """Dataset with the line among its attributes."""
+    from sonolube.rig.datasets import LabelledArrays
+
+    if isinstance(content, LabelledArrays):
+        return replace(content, attrs={**content.attrs, "made_by": line})
+    return content.assign_attrs(made_by=line)
 
 
 if __name__ == "__main__":
