@@ -28,7 +28,7 @@ class _Record:
 
     def __init__(self, folder: Path) -> None:
         self._path = folder / "state.json"
-        self._begun, self._written = time.monotonic(), 0.0
+        self._begun, self._written, self.of = time.monotonic(), 0.0, ""
 
     def progress(self, stage: str, done: int, total: int) -> None:
         """Write the progress, not more often than people can read."""
@@ -38,7 +38,7 @@ class _Record:
     def write(self, state: str, **more: object) -> None:
         """Write the state."""
         self._written = time.monotonic()
-        content = {"state": state, "seconds": self._written - self._begun} | more
+        content = {"state": state, "of": self.of, "seconds": self._written - self._begun} | more
         write_atomically(self._path, json.dumps(content))
 
 
@@ -51,9 +51,10 @@ def main(folder: Path) -> None:
     try:
         task = offered_task(request["task"])
         with given_arguments(task, request["arguments"], Places(**request["places"])) as given:
+            line = made_by(task, request["arguments"])
+            record.of = line.removeprefix("Made by ")
             watch = {"progress": record.progress} if "progress" in marks_of(task.function) else {}
             answer = called(task, given | watch)
-            line = made_by(task, request["arguments"])
             names = write_files(answer.files(), folder=folder / "files", line=line)
             more = {"files": names, "made_by": line}
             write_atomically(folder / "result.json", encoded(answer_object(answer) | more).decode())

@@ -6,7 +6,7 @@ import {addressAsLeft, addressOf, followAddress, PAGES, redo, stored, undo, useA
 import {TakeAway} from './take-away.js';
 
 /** Pages with styles of their own, in `pages/` beside the scripts. */
-const STYLED = new Set(['data', 'modes', 'design', 'lab']);
+const STYLED = new Set(['data', 'modes', 'design', 'lab', 'jobs', 'dissertation']);
 
 /** Module of a page, read with its styles. */
 function read(page) {
