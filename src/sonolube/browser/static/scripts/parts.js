@@ -52,5 +52,15 @@ export function useEvents(kinds, listener) {
   }, []);
 }
 
+/** Row that scrolls sideways where there is no room: what is chosen in it stays in view. @param {any} chosen */
+export function useInView(chosen) {
+  const row = useRef(null);
+  useEffect(() => {
+    const [here, around] = [row.current.querySelector('[aria-current], :checked'), row.current].map((each) => each?.getBoundingClientRect());
+    if (here) row.current.scrollLeft += here.left + here.width / 2 - around.left - around.width / 2;
+  }, [chosen]);
+  return row;
+}
+
 /** Address of a file of a job. @param {string} id @param {string} name @returns {string} */
 export const fileOf = (id, name) => `api/jobs/${id}/files/${name.split('/').map(encodeURIComponent).join('/')}`;
