@@ -3,11 +3,12 @@
 import json
 import re
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import pytest
-from playwright.sync_api import Page, expect
-from tests.browser.pages import at_rest, show
+from playwright.sync_api import Browser, Page, expect
+from tests.browser.pages import at_rest, opened, show
 from tests.browser.test_pages import faults_of_access
 from tests.browser.walks import HANDS, Mouse
 from tests.browser.workbench import Served
@@ -44,9 +45,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
 
 
 @pytest.mark.parametrize("hand", HANDS)
-def test_recordings_lead_to_a_prediction_with_own_runs(
-    hand: type[Mouse], page: Page, files: tuple[Path, Path]
-) -> None:
+def test_recordings_lead_to_a_prediction_with_own_runs(hand: type[Mouse], page: Page, files: tuple[Path, Path]) -> None:
     walk = hand(page, "tribologist")
     walk.press("page:data")
     expect(page.get_by_test_id("choose-files")).to_be_visible()
@@ -142,16 +141,17 @@ def test_a_recording_is_moved_and_zoomed_and_the_window_is_kept(
 
 
 def test_the_page_has_no_fault_of_access_and_does_not_scroll_sideways(
-    page: Page, workbench: Served, files: tuple[Path, Path]
+    browser: Browser, workbench: Served, files: tuple[Path, Path]
 ) -> None:
-    show(page, workbench, "tribometer", {}, where="data")
-    page.get_by_test_id("data-files").set_input_files(files)
-    expect(page.get_by_test_id("measured")).to_contain_text("Reduction")
-    at_rest(page)
-    for width in (1280, 390, 320):
-        page.set_viewport_size({"width": width, "height": 844})
-        widths = page.evaluate("[document.documentElement.scrollWidth, innerWidth]")
-        assert widths[0] <= widths[1]
-    for scheme in ("light", "dark"):
-        page.emulate_media(color_scheme=scheme)
-        assert faults_of_access(page) == []
+    with opened(browser, workbench, bypass_csp=True, reduced_motion="reduce") as page:
+        show(page, workbench, "tribometer", {}, where="data")
+        page.get_by_test_id("data-files").set_input_files(files)
+        expect(page.get_by_test_id("measured")).to_contain_text("Reduction")
+        at_rest(page)
+        for width in (1280, 390, 320):
+            page.set_viewport_size({"width": width, "height": 844})
+            page.wait_for_function("document.documentElement.scrollWidth <= innerWidth")  # figures follow the width
+        schemes: tuple[Literal["light", "dark"], ...] = ("light", "dark")
+        for scheme in schemes:
+            page.emulate_media(color_scheme=scheme)
+            assert faults_of_access(page) == []
