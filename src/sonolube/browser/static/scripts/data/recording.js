@@ -89,7 +89,7 @@ export default function Recording({file, own, set, info, asked}) {
   const conditions = stated(Object.fromEntries(CONDITIONS.map(([key]) => [key, own[key]])));
   return html`<${Card} id="trace-title" title=${file.name}>
       <${Trace} file=${file} mapping=${own.mapping} info=${info} shown=${shown} marks=${hasParts ? named(marks) : []} range=${own.range ?? null}
-        onRange=${(range) => set({range}, {replace: true})} onMark=${onMark} />
+        onRange=${(range) => set({range})} onMark=${onMark} />
       ${info.channels.length > 1 && html`<fieldset class="row"><legend class="hidden">Channels</legend>${info.channels.map((each, at) => html`<label key=${each.name} class="check">
         <input type="checkbox" checked=${shown.includes(at)} onChange=${() => show(at)} data-test=${`channel:${each.name}`} /> ${each.label}</label>`)}</fieldset>`}
       <${Labelled} id="set-task" label="What is measured"><${Select} id="set-task" choices=${Object.entries(TASKS).map(([key, [title]]) => [key, title])} value=${name}
