@@ -2,7 +2,7 @@
  * Channels of a recording over time, moved and zoomed by pointer, wheel and keys above a bar that shows where; its parts as handles.
  * What is drawn while it moves is there already; a finer view is asked for meanwhile.
  *
- * @typedef {{id: string, kind: string, label: string, from: number, to: number}} Mark
+ * @typedef {{id: string, kind: string, label: string, from: number, to: number, isFixed?: boolean}} Mark `isFixed` where only its end is moved
  */
 import {html, useEffect, useLayoutEffect, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {ask} from '../api.js';
@@ -215,7 +215,7 @@ export function Trace({file, mapping, info, shown, marks, range: given, onRange,
     const [left, right] = [mark.from, mark.to].map((value) => x.to(Math.min(Math.max(value, range[0]), range[1])));
     const [handle, wide] = [{mark, x, range, unit: info.axis.unit, onMove: onMark}, right - left];
     return html`<span key=${mark.id} class=${`trace-mark is-${mark.kind}`} style=${{left: `${left}px`, width: `${Math.max(wide, 0)}px`}}>${wide > 60 ? mark.label : ''}</span>
-        <${Handle} key=${`${mark.id}<`} end="from" ...${handle} /><${Handle} key=${`${mark.id}>`} end="to" ...${handle} />`;
+        ${!mark.isFixed && html`<${Handle} key=${`${mark.id}<`} end="from" ...${handle} />`}<${Handle} key=${`${mark.id}>`} end="to" ...${handle} />`;
   })}</div>
     <div class="trace-bar" ...${slider} aria-label="Part that is shown" ...${slide} data-test="trace-bar"><canvas ref=${bar} />
       <span class="trace-window" style=${{left: `${over.to(range[0])}px`, width: `${over.to(range[1]) - over.to(range[0])}px`}}></span></div>
