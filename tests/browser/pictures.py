@@ -9,6 +9,7 @@ from pathlib import Path
 from PIL import Image
 from playwright.sync_api import Browser, Page
 from tests.browser.pages import LOAD, VOLTS, at_rest, opened, show, started_browser
+from tests.browser.scans import write_groove
 from tests.browser.workbench import Served, served
 
 NEW = {"pin": "steel", "disc": "steel", "load": "5 N", "speed": "0.1 m/s", "frequency": "22 kHz", "amplitude": "2 um"}
@@ -32,6 +33,7 @@ def every_picture() -> Shots:
                 yield f"predict-{name}", page.screenshot()
         with opened(browser, workbench) as page:
             yield from _pages(page, workbench)
+            yield from _scan(page, workbench, Path(folder))
         yield from _without_an_answer(browser, workbench)
 
 
@@ -61,6 +63,25 @@ def _pages(page: Page, workbench: Served) -> Shots:
     page.get_by_test_id("use-rig").wait_for()
     at_rest(page)
     yield "new", page.screenshot()
+
+
+def _scan(page: Page, workbench: Served, folder: Path) -> Shots:
+    """A scan with a groove, cut aslant, and in 3D."""
+    show(page, workbench, "tribometer", {}, where="data")
+    page.get_by_test_id("data-files").set_input_files(write_groove(folder))
+    page.get_by_test_id("set:spacing").fill("5 um")
+    page.keyboard.press("Enter")
+    page.get_by_test_id("set:measure").select_option("groove")
+    page.get_by_test_id("set:robust").check()
+    page.get_by_test_id("set:from_y").fill("650 um")
+    page.keyboard.press("Enter")
+    page.get_by_test_id("measured").wait_for()
+    at_rest(page)
+    yield "scan", page.screenshot(full_page=True, clip={"x": 0, "y": 0, "width": 1280, "height": 1000})
+    page.get_by_test_id("set:seen").select_option("relief")
+    page.get_by_test_id("surface-canvas").wait_for()
+    at_rest(page)
+    yield "scan-relief", page.get_by_test_id("scan").screenshot()
 
 
 def _without_an_answer(browser: Browser, workbench: Served) -> Shots:

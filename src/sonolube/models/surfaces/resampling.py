@@ -21,7 +21,7 @@ class BlockMeans:
     Parameters
     ----------
     x, y : ndarray, shape (columns,) and (rows,)
-        Centres of the blocks, from the centre of the first pixel. [m]
+        Centres of the blocks in m, from the centre of the first pixel.
     height : ndarray, shape (rows, columns)
         Mean of the measured pixels; NaN where a block has none. [m]
     size : tuple of int
@@ -84,7 +84,7 @@ class LineSection:
     Parameters
     ----------
     distance : ndarray, shape (n,)
-        From the start, in even steps of at most the smaller spacing. [m]
+        From the start in m, in even steps of at most the smaller spacing.
     height : ndarray, shape (n,)
         Interpolated between the four pixels around; NaN where one of them that counts is missing. [m]
     """
@@ -100,7 +100,7 @@ def line_section(surface: HeightMap, *, start: Sequence[float], end: Sequence[fl
     ----------
     surface : HeightMap
     start, end : sequence of two float
-        x and y of the ends, from the centre of the first pixel; within half a pixel of the outermost centres. [m]
+        x and y of the ends in m, from the centre of the first pixel; within half a pixel of the outermost centres.
 
     Returns
     -------
@@ -123,7 +123,7 @@ def line_section(surface: HeightMap, *, start: Sequence[float], end: Sequence[fl
     length = float(math.dist(*ends))
     if length == 0:
         raise InvalidInput("section: both ends are the same point; move one of them")
-    share = np.linspace(0.0, 1.0, math.ceil(length / steps.min()) + 1)
+    share = np.linspace(0.0, 1.0, max(1, math.ceil(length / steps.min() - 1e-9)) + 1)
     places = np.clip((ends[0] + share[:, None] * (ends[1] - ends[0])) / steps, 0, counts - 1)
     low = np.minimum(places.astype(np.intp), np.maximum(counts - 2, 0))
     high = np.minimum(low + 1, counts - 1)

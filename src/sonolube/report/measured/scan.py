@@ -73,10 +73,9 @@ def section_chart(
     """Heights along a line, and what is said of them; ends in m."""
     found = line_section(surface, start=start, end=end)
     known = found.height[np.isfinite(found.height)]
-    facts = [
-        ("Length", format_si(float(found.distance[-1]), "m", digits=4)),
-        ("Points", f"{found.distance.size}, {found.distance.size - known.size} of them missing"),
-    ]
+    facts = [("Length", format_si(float(found.distance[-1]), "m", digits=4)), ("Points", f"{found.distance.size}")]
+    if known.size < found.distance.size:
+        facts.append(("Of them missing", f"{found.distance.size - known.size}"))
     if known.size:
         facts += [
             ("Lowest to highest", format_si(float(np.ptp(known)), "m", digits=4)),

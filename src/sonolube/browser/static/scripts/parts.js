@@ -55,6 +55,16 @@ export function useEvents(kinds, listener) {
   }, []);
 }
 
+/** Row that scrolls sideways where there is no room: what is chosen in it stays in view. @param {any} chosen */
+export function useInView(chosen) {
+  const row = useRef(null);
+  useEffect(() => {
+    const [here, around] = [row.current.querySelector('[aria-current], :checked'), row.current].map((each) => each?.getBoundingClientRect());
+    if (here) row.current.scrollLeft += here.left + here.width / 2 - around.left - around.width / 2;
+  }, [chosen]);
+  return row;
+}
+
 /** Take files that are dropped anywhere on the page; true while some are held over it. @param {(files: File[]) => void} onFiles @returns {boolean} */
 export function useDrop(onFiles) {
   const [isOver, setOver] = useState(false);

@@ -4,7 +4,7 @@ import {Blocks, Caveats, Failure, TextTable} from '../answer.js';
 import {Chart} from '../chart.js';
 import {Labelled, refusedBy, TextField} from '../fields.js';
 import {Waiting} from '../job.js';
-import {Button, Card} from '../parts.js';
+import {Button, Card, Select} from '../parts.js';
 import {addressOf, change, settle, useApp} from '../state.js';
 import {offer} from '../take-away.js';
 import {useMeasured} from './files.js';
@@ -24,6 +24,13 @@ export const Settings = ({fields, own, set, faults = []}) => html`<div class="st
     onText=${(text, isMoving) => !isMoving && set({[name]: text.trim() || null})} onSettle=${settle} data-test=${`set:${name}`}
     ...${refusedBy(id, fault)} /><//>`;
 })}</div>`;
+
+/** Choice of what is set for a file. @param {{name: string, label: string, choices: [string, string][], value: string, onValue: (value: string) => void}} props */
+export const Choice = ({name, label, choices, value, onValue}) => html`<${Labelled} id=${`set-${name}`} label=${label}><${Select} id=${`set-${name}`} choices=${choices}
+  value=${value} onChange=${(event) => onValue(event.target.value)} data-test=${`set:${name}`} /><//>`;
+
+/** Choices of a whole number from 1, or of none. @param {string} none @param {number} most @returns {[string, string][]} */
+export const countsTo = (none, most) => [['', none], ...Array.from({length: most}, (_, at) => [String(at + 1), String(at + 1)])];
 
 /** What the rig takes of an answer, and what sets it there. @param {{entries: Object<string, string>, note: string}} props */
 function UseInRig({entries, note}) {

@@ -1,8 +1,7 @@
 /** Heights of a scan in 3D, the vertical stretched by a number that is shown. */
 import {html, useMemo} from '../../vendor/htm-preact-3.1.1.js';
-import {Labelled} from '../fields.js';
-import {Select} from '../parts.js';
 import {SurfaceView} from '../surface-view.js';
+import {Choice} from './measured.js';
 
 const STRETCHES = [0, 1, 2, 3, 4, 5].flatMap((power) => [1, 2, 5].map((step) => step * 10 ** power));
 const SHARE = 0.15; // of the longer side that the heights take, where no other stretch is chosen
@@ -38,8 +37,8 @@ export function Relief({content, own, set, label}) {
   const usual = usualStretch(field, ratio);
   const stretch = Number(own.stretch ?? usual);
   const mesh = useMemo(() => meshOf(field, ratio * stretch), [content, stretch]);
-  return html`<${Labelled} id="scan-stretch" label="Heights are drawn"><${Select} id="scan-stretch" value=${String(stretch)} data-test="scan:stretch"
-      choices=${STRETCHES.map((each) => [String(each), each === 1 ? 'to scale' : `${each} times as high as they are`])}
-      onChange=${({target}) => set({stretch: Number(target.value) === usual ? null : target.value})} /><//>
+  const choices = STRETCHES.map((each) => [String(each), each === 1 ? 'to scale' : `${each} times as high as they are`]);
+  return html`<div class="scan-stretch"><${Choice} name="stretch" label="Heights are drawn" choices=${choices} value=${String(stretch)}
+      onValue=${(value) => set({stretch: Number(value) === usual ? null : value})} /></div>
     <${SurfaceView} ...${mesh} names=${NAMES} hasEdges=${false} scale="cividis" quantity="Height" unit=${field.unit} label=${`${label}, heights drawn ${stretch} times as high as they are`} />`;
 }

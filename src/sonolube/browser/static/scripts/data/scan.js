@@ -4,11 +4,10 @@ import {Failure, TextTable} from '../answer.js';
 import {useReply} from '../api.js';
 import {Chart} from '../chart.js';
 import {along} from '../chart-scale.js';
-import {Labelled} from '../fields.js';
-import {Button, Card, Loading, Select} from '../parts.js';
+import {Button, Card, classes, Loading} from '../parts.js';
 import {settle} from '../state.js';
 import {save} from '../take-away.js';
-import {Measured, Settings, stated} from './measured.js';
+import {Choice, countsTo, Measured, Settings, stated} from './measured.js';
 import {Relief} from './relief.js';
 
 const LACKING = [['spacing', 'Distance of pixels, or x,y', 'such as 0.5 um'], ['length_unit', 'Unit of the lengths', 'such as um']];
@@ -18,11 +17,12 @@ const VIEWS = [['map', 'map'], ['relief', 'in 3D']];
 /** Tasks that measure a scan, each with its title, settings, and the figures that the page shows otherwise. */
 const TASKS = {
   surface: {title: 'roughness', fields: [['short_cutoff', 'Remove waves below'], ['long_cutoff', 'Remove waves above']]},
-  groove: {title: 'wear grooves', fields: [['track', 'Track, of several', 'the only one'], ['groove_diameter', 'Diameter of the ring', 'unknown'],
-    ['sliding_distance', 'Sliding distance', 'unknown'], ['tip_radius', 'Radius of the pin', 'unknown']]},
+  groove: {title: 'wear grooves', fields: [['groove_diameter', 'Diameter of the ring', 'unknown'], ['sliding_distance', 'Sliding distance', 'unknown'],
+    ['tip_radius', 'Radius of the pin', 'unknown']]},
 };
 const ENDS = [['from', 'Beginning'], ['to', 'End']];
 const SECTION = [['from_x', 'From x'], ['from_y', 'From y'], ['to_x', 'To x'], ['to_y', 'To y']];
+const MAX_TRACKS = 6;
 const STEPS = 200; // of the arrow keys over a side of the map
 const RIG_NOTE = 'Summits at the pixels as they are; the table by sampling interval says how far they depend on it. One surface against a smooth one.';
 const KEYS = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
@@ -33,9 +33,9 @@ const degreeOf = (own) => Number(own.degree ?? 1);
 /** What measures a scan. @param {import('./files.js').DataFile} file @param {object} own @returns {import('./files.js').Asked} */
 export function taskOf(file, own) {
   const name = own.measure ?? 'surface';
-  const texts = [...LACKING, ...TASKS[name].fields].map(([entry]) => [entry, entry === 'track' && /^\d+$/.test(own.track) ? Number(own.track) : own[entry]]);
-  const form = name === 'surface' ? {form: degreeOf(own), robust: own.robust} : {};
-  return {task: `measure ${name}`, args: {files: file, ...form, ...stated(Object.fromEntries(texts))}};
+  const texts = [...LACKING, ...TASKS[name].fields].map(([entry]) => [entry, own[entry]]);
+  const more = name === 'surface' ? {form: degreeOf(own), robust: own.robust} : {track: own.track && Number(own.track)};
+  return {task: `measure ${name}`, args: {files: file, ...stated({...more, ...Object.fromEntries(texts)})}};
 }
 
 const textIn = (value, unit) => `${Number(value.toPrecision(5))} ${unit}`;
@@ -84,7 +84,7 @@ function End({label, place, panel, ranges, onMove}) {
   };
   const said = place.map((value, at) => `${'xy'[at]} ${textIn(value, panel.x.unit)}`).join(', ');
   return html`<button type="button" class="scan-end" style=${{left: `${100 * shares[0]}%`, top: `${100 * (1 - shares[1])}%`}} onPointerDown=${hold} onPointerMove=${move}
-    onPointerUp=${leave} onPointerCancel=${leave} onKeyDown=${press} onKeyUp=${settle} data-test=${`end:${label}`}
+    onPointerUp=${leave} onPointerCancel=${leave} onKeyDown=${press} onBlur=${settle} data-test=${`end:${label}`}
     aria-label=${`${label} of the section: ${said}. Arrow keys move it, with shift ten times as far.`}></button>`;
 }
 
@@ -118,12 +118,10 @@ function SectionCard({file, request, section, set}) {
   return html`<${Card} id="section-title" title="Section" data-test="section">
     <${Settings} fields=${SECTION} own=${section} set=${(partial) => set({section: {...section, ...partial}})} faults=${failure?.faults} />
     <${Failure} failure=${failure} shown=${SECTION.map(([name]) => name)} />
+    ${!content && !failure && html`<${Loading}>Cutting…<//>`}
     ${content && html`<div aria-busy=${isWaiting}><${Chart} name="section" chart=${content.chart} dimmed=${Boolean(failure)} />
       <${TextTable} rows=${content.facts} label="The section" /><p><${Button} onClick=${take} data-test="take-section">Save as CSV<//></p></div>`}<//>`;
 }
-
-const Choice = ({name, label, choices, value, onValue}) => html`<${Labelled} id=${`scan-${name}`} label=${label}><${Select} id=${`scan-${name}`} choices=${choices}
-  value=${value} onChange=${(event) => onValue(event.target.value)} data-test=${`scan:${name}`} /><//>`;
 
 export default function Scan({file, own, set}) {
   const {shown = 'levelled', robust = false, seen = 'map', measure = 'surface'} = own;
@@ -132,11 +130,11 @@ export default function Scan({file, own, set}) {
   const lacking = LACKING.filter(([name]) => own[name] || failure?.faults.some(({key}) => key === name));
   const section = content && !content.is_profile && sectionOf(content, own);
   const pick = (name, usual) => (value) => set({[name]: value === usual ? null : value});
-  return html`<${Card} id="scan-title" title=${file.name}>
-      <div class="row scan-row"><${Choice} name="heights" label="Heights" choices=${HEIGHTS} value=${shown} onValue=${pick('shown', 'levelled')} />
-        <${Choice} name="form" label="Form" choices=${FORMS} value=${String(degreeOf(own))} onValue=${pick('degree', '1')} />
+  return html`<div class=${classes('scan-columns', {'is-alone': !section})}><${Card} id="scan-title" title=${file.name}>
+      <div class="row scan-row"><${Choice} name="shown" label="Heights" choices=${HEIGHTS} value=${shown} onValue=${pick('shown', 'levelled')} />
+        <${Choice} name="degree" label="Form" choices=${FORMS} value=${String(degreeOf(own))} onValue=${pick('degree', '1')} />
         ${section && html`<${Choice} name="seen" label="Shown as" choices=${VIEWS} value=${seen} onValue=${pick('seen', 'map')} />`}
-        <label class="check"><input type="checkbox" checked=${robust} onChange=${(event) => set({robust: event.target.checked || null})} data-test="scan:robust" />
+        <label class="check"><input type="checkbox" checked=${robust} onChange=${(event) => set({robust: event.target.checked || null})} data-test="set:robust" />
           <span>Fit the form past grooves</span></label></div>
       ${lacking.length > 0 && html`<${Settings} fields=${lacking} own=${own} set=${set} faults=${failure?.faults} />`}
       <${Failure} failure=${failure} shown=${LACKING.map(([name]) => name)} />
@@ -147,10 +145,11 @@ export default function Scan({file, own, set}) {
       : html`<${HeightMap} content=${content} section=${section} set=${set} />`}
         ${content.caveats.map((line) => html`<p key=${line} class="notice">${line}</p>`)}
         <details class="chart-numbers"><summary>About this scan</summary><${TextTable} rows=${content.facts} label="About this scan" /></details></div>`}<//>
-    ${section && html`<${SectionCard} file=${file} request=${request} section=${section} set=${set} />`}
+    ${section && html`<${SectionCard} file=${file} request=${request} section=${section} set=${set} />`}</div>
     ${content && html`<${Card} id="measure-title" title="Measured">
       <div class="row scan-row"><${Choice} name="measure" label="Measure" choices=${Object.entries(TASKS).map(([name, {title}]) => [name, title])} value=${measure}
-        onValue=${pick('measure', 'surface')} /></div>
+        onValue=${pick('measure', 'surface')} />${measure === 'groove' && html`<${Choice} name="track" label="Track" choices=${countsTo('the only one', MAX_TRACKS)}
+        value=${own.track ?? ''} onValue=${pick('track', '')} />`}</div>
       <${Measured} key=${measure} file=${file} asked=${taskOf(file, own)} fields=${TASKS[measure].fields} own=${own} set=${set} rigNote=${RIG_NOTE}
         leave=${measure === 'surface' && !isCut(own) && section ? ['Heights'] : []} /><//>`}`;
 }

@@ -1,20 +1,21 @@
 /** An impedance spectrum: the equivalent circuit that fits it, or the stack of the rig, with residuals, resonances and coupling. */
 import {html, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {ask} from '../api.js';
-import {Labelled} from '../fields.js';
-import {Button, Card, Refusal, Select} from '../parts.js';
+import {Button, Card, Refusal} from '../parts.js';
 import {useApp} from '../state.js';
-import {Measured, stated} from './measured.js';
+import {Choice, countsTo, Measured, stated} from './measured.js';
 
 const RESIDUALS = [['log-complex', 'logarithm of magnitude and phase'], ['log-magnitude', 'logarithm of magnitude'], ['linear-magnitude', 'magnitude']];
-const FIELDS = [['branches', 'Modes', 'as many as are significant'], ['series_resistance', 'Resistance of the leads', '0 ohm'], ['sweep', 'Sweep of the file', 'first']];
-const OF_STACK = ['sweep'];
+const USUAL = RESIDUALS[0][0];
+const SWEEP = ['sweep', 'Sweep of the file', 'the first one'];
+const LEADS = ['series_resistance', 'Resistance of the leads', '0 ohm'];
+const MAX_MODES = 8;
 const RIG_NOTE = 'The stack as it was fitted with the masses of the rig: free capacitance, stroke, stiffness and damping.';
 
 /** What measures a spectrum. @param {import('./files.js').DataFile} file @param {object} own @returns {import('./files.js').Asked} */
 export function taskOf(file, own) {
   const {branches, residual, sweep, stack, series_resistance} = own;
-  const ofCircuit = {branches: /^\d+$/.test(branches) ? Number(branches) : branches, series_resistance};
+  const ofCircuit = {branches: branches && Number(branches), series_resistance};
   return {task: 'measure impedance', args: {files: file, ...stated({residual, sweep, ...(stack ? {stack_of: stack} : ofCircuit)})}};
 }
 
@@ -29,8 +30,9 @@ function Sought({own, set}) {
     setNote((failure ?? kept.failure)?.text);
   };
   return html`<div class="row scan-row">
-    <${Labelled} id="residual" label="The fit minimises"><${Select} id="residual" choices=${RESIDUALS} value=${own.residual ?? RESIDUALS[0][0]} data-test="residual"
-      onChange=${(event) => set({residual: event.target.value === RESIDUALS[0][0] ? null : event.target.value})} /><//>
+    <${Choice} name="residual" label="The fit minimises" choices=${RESIDUALS} value=${own.residual ?? USUAL} onValue=${(value) => set({residual: value === USUAL ? null : value})} />
+    ${!own.stack && html`<${Choice} name="branches" label="Modes" choices=${countsTo('as many as are significant', MAX_MODES)} value=${own.branches ?? ''}
+      onValue=${(value) => set({branches: value || null})} />`}
     <${Button} onClick=${take} data-test="fit-stack">${own.stack ? 'Fit the stack of my rig of now' : 'Fit the stack of my rig'}<//>
     ${own.stack && html`<${Button} onClick=${() => set({stack: null})} data-test="fit-circuit">Fit a circuit<//>
       <span class="hint">The stack of ${own.stack.name} is fitted, with what the rig was then.</span>`}
@@ -38,7 +40,6 @@ function Sought({own, set}) {
 }
 
 export default function Spectrum({file, own, set}) {
-  const fields = own.stack ? FIELDS.filter(([name]) => OF_STACK.includes(name)) : FIELDS;
   return html`<${Card} id="spectrum-title" title=${file.name}>
-    <${Measured} file=${file} asked=${taskOf(file, own)} fields=${fields} own=${own} set=${set} rigNote=${RIG_NOTE}><${Sought} own=${own} set=${set} /><//><//>`;
+    <${Measured} file=${file} asked=${taskOf(file, own)} fields=${own.stack ? [SWEEP] : [SWEEP, LEADS]} own=${own} set=${set} rigNote=${RIG_NOTE}><${Sought} own=${own} set=${set} /><//><//>`;
 }
