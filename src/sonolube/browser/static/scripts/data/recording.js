@@ -1,12 +1,12 @@
 /** A recording: its channels over time with the parts that are measured, what a task finds in them, and where that goes. */
 import {html} from '../../vendor/htm-preact-3.1.1.js';
 import {short} from '../chart-scale.js';
-import {Labelled, split, TextField} from '../fields.js';
-import {Button, Card, Select} from '../parts.js';
+import {split, TextField} from '../fields.js';
+import {Button, Card} from '../parts.js';
 import {settle} from '../state.js';
 import {Columns} from './columns.js';
 import {mappingOf, useMeasured} from './files.js';
-import {Measured, stated} from './measured.js';
+import {Choice, Measured, stated} from './measured.js';
 import {Trace} from './trace.js';
 import {Use} from './use.js';
 
@@ -96,8 +96,7 @@ export default function Recording({file, own, set, info, asked}) {
         onRange=${(range) => set({range})} onMark=${onMark} />
       ${info.channels.length > 1 && html`<fieldset class="row"><legend class="hidden">Channels</legend>${info.channels.map((each, at) => html`<label key=${each.name} class="check">
         <input type="checkbox" checked=${shown.includes(at)} onChange=${() => show(at)} data-test=${`channel:${each.name}`} /> ${each.label}</label>`)}</fieldset>`}
-      <${Labelled} id="set-task" label="What is measured"><${Select} id="set-task" choices=${Object.entries(TASKS).map(([key, [title]]) => [key, title])} value=${name}
-        onChange=${(event) => set({task: event.target.value})} data-test="set:task" /><//>
+      <${Choice} name="task" label="What is measured" choices=${Object.entries(TASKS).map(([key, [title]]) => [key, title])} value=${name} onValue=${(task) => set({task})} />
       <${Measured} file=${file} asked=${asked} fields=${[...TASKS[name][2], ...CONDITIONS]} own=${own} set=${set}>
         ${hasParts && html`<${Parts} marks=${marks} isFound=${isFound} enter=${enter} range=${own.range ?? [info.begin, info.end]} />`}<//>
       <${Use} source=${content && !failure ? {results: content.answer.results, conditions} : null} /><//>

@@ -140,7 +140,7 @@ function Handle({mark, end, x, range, unit, onMove}) {
     onMove(mark, end, value + step * (event.shiftKey ? 0.05 : 0.005) * (range[1] - range[0]), true);
   };
   if (value < range[0] || value > range[1]) return null;
-  return html`<div role="slider" tabindex="0" class=${`trace-handle is-${end}`} style=${{left: `${x.to(value)}px`}} aria-valuenow=${value} aria-valuetext=${`${short(value, 6)} ${unit}`}
+  return html`<div role="slider" tabindex="0" class=${`trace-handle is-${end} of-${mark.kind}`} style=${{left: `${x.to(value)}px`}} aria-valuenow=${value} aria-valuetext=${`${short(value, 6)} ${unit}`}
     aria-valuemin=${range[0]} aria-valuemax=${range[1]} aria-label=${`${end === 'from' ? 'Begin' : 'End'} of ${id}, ${label}`} ...${drag} onKeyDown=${press}
     onBlur=${() => onMove(mark, end, value, false)} data-test=${`handle:${id}:${end}`}></div>`;
 }
