@@ -598,8 +598,12 @@ MODES = {
             "--group": "run",
             "--channel": "friction",
             "--section": "2",
+            "--part": "1s:9s",
         }
         | SHEETS,
+    ),
+    "friction of stated parts": Mode(
+        "measure friction", ("FOLDER/friction.csv",), {"--rest": "0s:1s", "--step": "1s:5s=10V"}
     ),
     "friction of a test in several files": Mode(
         "measure friction", ("FOLDER/friction.csv", "FOLDER/other.csv"), flags=("--join",)

@@ -9,7 +9,16 @@ from sonolube.variants import VariantTable
 Answering = Callable[[Mapping[str, Any], Places], dict[str, Any]]
 """Answers one kind of request."""
 
-VIEWS: Final = {"rig": "sonolube.browser.rig_view:rig_view", "take": "sonolube.browser.take_away:taken"}
+VIEWS: Final = {
+    "file": "sonolube.browser.recording_view:file_view",
+    "measured-table": "sonolube.browser.measured_use:measured_table",
+    "measured-use": "sonolube.browser.measured_use:measured_use",
+    "recording": "sonolube.browser.recording_view:recording_view",
+    "scan": "sonolube.browser.scan_view:scan_view",
+    "section": "sonolube.browser.scan_view:section_view",
+    "rig": "sonolube.browser.rig_view:rig_view",
+    "take": "sonolube.browser.take_away:taken",
+}
 """What pages ask for beside the answers of tasks, each by its name as `/api/{name}`."""
 
 KINDS: VariantTable[Answering] = VariantTable(
