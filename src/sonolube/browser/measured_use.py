@@ -8,11 +8,11 @@ from typing import Any, Final
 
 from sonolube import __version__
 from sonolube.browser.places import Places
-from sonolube.browser.uploads import uploaded
+from sonolube.browser.uploads import named_uploads, uploaded
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import RecordingMapping, read_mapping
 from sonolube.measurement.run_rows import rows_of_table, run_rows_csv
-from sonolube.tasks.files import NamedBytes, file_path, private_files
+from sonolube.tasks.files import NamedBytes, file_path
 from sonolube.text.units import to_si
 from sonolube.vocabulary import quantities
 
@@ -55,7 +55,7 @@ def measured_use(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
     if not isinstance(results, list) or len(results) > _MAX_RESULTS or not all(isinstance(e, Mapping) for e in results):
         raise InvalidInput("results: give those of an answer in JSON", key="results")
     rows = [row for result in results for row in _runs(result, conditions)]
-    with private_files():
+    with named_uploads():
         if payload.get("table"):
             rows = rows_of_table(_path(payload["table"], places), mapping=_mapping(payload.get("mapping")))
         before = rows_of_table(_path(payload["runs"], places)) if payload.get("runs") else []

@@ -5,7 +5,8 @@ What is read once of a file is kept beside it in the folder of uploads, and goes
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict
+from contextlib import suppress
+from dataclasses import asdict, replace
 from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from sonolube.browser.places import Places
-from sonolube.browser.uploads import companion, uploaded
+from sonolube.browser.uploads import companion, named_uploads, uploaded
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.measurement.column_statements import FileColumn, mapping_of_statements, stated_file_columns
 from sonolube.measurement.file_kind import file_kind
@@ -22,7 +23,7 @@ from sonolube.measurement.recordings.pyramid import extremes, extremes_of_range
 from sonolube.measurement.recordings.reader import read_recording, recognised_mapping, recording_format
 from sonolube.measurement.run_table import run_text
 from sonolube.storage.files import unfinished_file, write_atomically
-from sonolube.tasks.files import NamedBytes, file_path, private_files, with_names_only
+from sonolube.tasks.files import NamedBytes, file_path, with_names_only
 from sonolube.text.units import to_si
 from sonolube.vocabulary import quantities
 
@@ -47,7 +48,7 @@ def file_view(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
     if place.is_file() and not is_new:
         kept: dict[str, Any] = json.loads(place.read_text(encoding="utf-8"))
         return kept
-    with private_files():
+    with named_uploads():
         given = file_path(NamedBytes(name, path.read_bytes()))
         found = _mapping(mapping)
         if is_new:
@@ -55,8 +56,10 @@ def file_view(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
         view = _described(given, found)
         if view["kind"] == "recording":
             view |= _read(given, found, path, mapping)
-    write_atomically(place, json.dumps(view))
-    return view
+    text = json.dumps(view)
+    write_atomically(place, text)
+    found_view: dict[str, Any] = json.loads(text)
+    return found_view
 
 
 def _described(path: Path, mapping: RecordingMapping | None) -> dict[str, Any]:
@@ -65,11 +68,8 @@ def _described(path: Path, mapping: RecordingMapping | None) -> dict[str, Any]:
     columns: list[FileColumn] = []
     if kind in ("recording", "runs"):
         known = mapping or recognised_mapping(path)
-        try:
+        with suppress(SonolubeError):  # the reader of recordings says what is wrong
             columns = _columns(path, known)
-        except InvalidInput as failure:
-            if kind == "runs":
-                raise InvalidInput(with_names_only(str(failure))) from None
     return {
         "kind": kind,
         "bytes": path.stat().st_size,
@@ -103,8 +103,6 @@ def _head(path: Path) -> Path:
 
 def _layout(path: Path) -> RecordingMapping | None:
     """Mapping of the instrument that wrote a file, else one with the lines above its headings."""
-    from dataclasses import replace
-
     known = recognised_mapping(path)
     if known is not None or recording_format(path).name not in _TEXTS:
         return known

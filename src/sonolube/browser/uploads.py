@@ -3,12 +3,14 @@
 import secrets
 import shutil
 import tempfile
-from collections.abc import AsyncIterator, Mapping
+from collections.abc import AsyncIterator, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path, PurePath
 from typing import Any, Final
 
 from sonolube.browser.places import Places
-from sonolube.errors import InvalidInput
+from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.tasks.files import private_files, with_names_only
 
 _LARGEST: Final = 256 * 2**20  # bytes of one file
 _MOST: Final = 4 * _LARGEST  # of all files, beyond which the oldest go
@@ -27,6 +29,16 @@ def uploaded(file: Any, places: Places) -> tuple[str, Path]:
 def companion(upload: Path, name: str) -> Path:
     """Path of what is kept beside an upload, and goes with it."""
     return upload.with_name(f"{upload.name}.{name}")
+
+
+@contextmanager
+def named_uploads() -> Iterator[None]:
+    """Keep uploads as files under their own names inside a `with` block, whose refusals name them without folders."""
+    with private_files():
+        try:
+            yield
+        except SonolubeError as failure:
+            raise InvalidInput(with_names_only(str(failure)), key=getattr(failure, "key", "")) from None
 
 
 class Uploads:

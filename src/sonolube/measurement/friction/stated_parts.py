@@ -88,23 +88,23 @@ def with_stated_parts(recording: "xr.Dataset", stated: StatedParts) -> "xr.Datas
         raise InvalidInput("parts are stated by the time, which this recording does not have")
     time = recording["time"].to_numpy()
     rest = _within(time, stated.rests)
-    added = {}
+    added: dict[str, Floats] = {}
     if stated.rests:
-        known = [name for name in _SPEEDS if name in recording] or ["motor_on"]
+        channels = [name for name in _SPEEDS if name in recording] or ["motor_on"]
         usual = np.ones(time.size)
-        added = {name: recording[name].to_numpy() if name in recording else usual for name in known}
-        added = {name: ("time", np.where(rest, 0.0, values)) for name, values in added.items()}
+        speeds = {name: recording[name].to_numpy() if name in recording else usual for name in channels}
+        added = {name: np.where(rest, 0.0, values) for name, values in speeds.items()}
     if stated.steps:
         number, voltage = np.zeros(time.size), np.full(time.size, np.nan)
         for place, (span, each) in enumerate(stated.steps, start=1):
             inside = _within(time, [span])
             number[inside], voltage[inside] = place, each
-        added |= {"voltage_peak_to_peak": ("time", voltage), STATED_STEP: ("time", number)}
+        added |= {"voltage_peak_to_peak": voltage, STATED_STEP: number}
         if "friction_force" in recording and not any(name in recording for name in _SPEEDS):  # which tell rest
-            known = np.where(rest | (number > 0), recording["friction_force"].to_numpy(), np.nan)
-            added["friction_force"] = ("time", known)
+            force = recording["friction_force"].to_numpy()
+            added["friction_force"] = np.where(rest | (number > 0), force, np.nan)
     attributes = {name: recording[name].attrs for name in added if name in recording} | {"voltage_peak_to_peak": _VOLTS}
-    changed = recording.assign({name: (*values, attributes.get(name, {})) for name, values in added.items()})
+    changed = recording.assign({name: ("time", values, attributes.get(name, {})) for name, values in added.items()})
     if stated.rests:
         changed = changed.assign_attrs(rest="as stated")
     if stated.part is None:
