@@ -10,17 +10,17 @@ Answering = Callable[[Mapping[str, Any], Places], dict[str, Any]]
 """Answers one kind of request."""
 
 VIEWS: Final = {
+    "parts": "sonolube.browser.mode_view:mode_parts",
     "rig": "sonolube.browser.rig_view:rig_view",
     "take": "sonolube.browser.take_away:taken",
 }
 """What pages ask for beside the answers of tasks, each by its name as `/api/{name}`."""
 
+WITH_MODES: Final = ("modes", "horn design", "impedance compute")
+"""Tasks whose jobs keep the modes of a part beside the files of their answers."""
+
 KINDS: VariantTable[Answering] = VariantTable(
     "kind of request",
-    {
-        "task": "sonolube.browser.answers:task_answer",
-        "description": "sonolube.browser.answers:description",
-        **VIEWS,
-    },
+    {"task": "sonolube.browser.answers:task_answer", "description": "sonolube.browser.answers:description", **VIEWS},
 )
 """Functions that answer each kind of request."""

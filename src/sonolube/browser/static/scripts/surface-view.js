@@ -231,7 +231,7 @@ export function SurfaceView({positions, triangles, values, shape, amplitude = 0,
     <div class="surface-row">
       <canvas ref=${canvas} role="img" tabindex=${isDrawn ? 0 : undefined} class="surface-canvas" hidden=${!isDrawn} aria-label=${label} onKeyDown=${press}
         onWheel=${wheel} onPointerDown=${(event) => canvas.current.setPointerCapture(event.pointerId)} onPointerMove=${move} data-test=${`${test}-canvas`} />
-      ${isDrawn && html`<${Directions} rows=${rows} /><${ColourScale} field=${{values: [ends], scale, scale_text: `${quantity} (${unit})`}} height=${220} />`}
+      ${isDrawn && html`<${Directions} rows=${rows} /><${ColourScale} field=${{values: [ends], scale, scale_text: unit ? `${quantity} (${unit})` : quantity}} height=${220} />`}
     </div>
     ${!isDrawn && html`<p class="notice" role="status" data-test="no-webgl">This browser has no WebGL2 at present, so the body is not drawn; its numbers stand in the table.</p>`}
     ${isDrawn && html`<div class="row surface-tools" role="group" aria-label="View">
