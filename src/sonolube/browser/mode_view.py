@@ -108,8 +108,8 @@ def shapes_object(found: "SurfaceModes") -> dict[str, Any]:
                 "frequency": mode.frequency,
                 "reference": mode.reference,
                 "shape": _packed(mode.displacement, "<f4"),
-                "size": _packed(np.linalg.norm(mode.displacement, axis=-1), "<f4"),
                 "stress": None if mode.stress is None else _packed(_MEGAPASCAL_PER_MICROMETRE * mode.stress, "<f4"),
+                "peak_stress": None if mode.peak_stress is None else _MEGAPASCAL_PER_MICROMETRE * mode.peak_stress,
                 "end_ratio": None if mode.motion is None else mode.motion.end_ratio,
                 "nodal_planes": None if mode.motion is None else [1e3 * each for each in mode.motion.nodal_planes],
             }

@@ -56,7 +56,7 @@ def test_a_mode_of_no_family_has_no_nodal_planes_and_an_end_at_rest_no_ratio() -
 
 
 def test_the_surface_encloses_the_body() -> None:
-    # Divergence theorem: a third of the flux of the position through the triangles, all seen from within, is the volume.
+    # Divergence theorem: a third of the flux of the position through the triangles, seen from within, is the volume.
     found = modes()
     corners = found.points[found.triangles]
     assert np.abs(np.linalg.det(corners)).sum() / 6 == approx(LENGTH * WIDTH**2, rel=1e-12)

@@ -7,6 +7,7 @@ from types import MappingProxyType
 import numpy as np
 
 from sonolube.checks import Floats, Integers
+from sonolube.models.fem.mesh.mesh import Mesh
 from sonolube.models.fem.results.figures import shaped_surface
 from sonolube.models.fem.results.nodal_fields import nodal_stress_components, von_mises_stress
 from sonolube.models.fem.results.sections import SectionMotion, mode_section_motion
@@ -32,6 +33,8 @@ class SurfaceMode:
     stress : ndarray, shape (n,), or None
         Equivalent stress of von Mises over the reference; None for a body with ceramics, whose electric fields have
         stress too. [Pa/m]
+    peak_stress : float or None
+        Greatest equivalent stress of the whole body over the reference; None where there is no stress. [Pa/m]
     motion : SectionMotion or None
         Of the cross-sections; None for a family that does not move these as a whole.
     """
@@ -41,6 +44,7 @@ class SurfaceMode:
     reference: str
     displacement: Floats
     stress: Floats | None
+    peak_stress: float | None
     motion: SectionMotion | None
 
 
@@ -85,21 +89,22 @@ def surface_modes(
     modes = []
     for row, (name, frequency) in enumerate(frequencies):
         reference, over = references.get(name, (_LARGEST, float(largest[row])))
+        stress = nodal_stress_components(model, shapes[row]) / abs(over) if has_stress else None
         modes.append(
             SurfaceMode(
                 name=name,
                 frequency=frequency,
                 reference=reference,
                 displacement=surface.displacement[row] / over,
-                stress=_surface_stress(model, shapes[row]) / abs(over) if has_stress else None,
+                stress=None if stress is None else _surface_stress(mesh, stress),
+                peak_stress=None if stress is None else float(von_mises_stress(stress).max()),
                 motion=mode_section_motion(mesh, shapes[row], axis=axis, family=name.split()[0]),
             )
         )
     return SurfaceModes(points=surface.points, triangles=surface.triangles, axis=axis, modes=tuple(modes))
 
 
-def _surface_stress(model: Model, shape: Floats) -> Floats:
-    """Equivalent stress at the points of the surface, from the components there."""
-    components = nodal_stress_components(model, shape)
-    on_surface = shaped_surface(model.mesh, np.stack([components[:, :3], components[:, 3:]])).displacement
+def _surface_stress(mesh: Mesh, components: Floats) -> Floats:
+    """Equivalent stress at the points of the surface, from the components at the nodes."""
+    on_surface = shaped_surface(mesh, np.stack([components[:, :3], components[:, 3:]])).displacement
     return von_mises_stress(np.concatenate([on_surface[0], on_surface[1]], axis=-1))

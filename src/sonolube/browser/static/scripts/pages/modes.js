@@ -115,19 +115,21 @@ function Modes({shapes, view, tuned}) {
   })), [positions]);
   const planes = ({nodal_planes: found}) => (found ? found.map((each) => each.toFixed(1)).join(', ') || 'none' : '–');
   const ratio = ({end_ratio: found}) => found?.toPrecision(3) ?? '–';
-  return html`<${Card} id="modes-shapes" title="Modes" data-test="shapes">
+  const heads = ['Mode', 'Frequency', `End +${axis} over end -${axis}`, `Nodal planes from end -${axis}, mm`, ...(modes[0].peak_stress === null ? [] : ['Peak stress, MPa/µm'])];
+  return html`<${Card} id="modes-shapes" title="Modes" data-test="shapes"><div class="modes-shown">
+    <div><${MovingSurface} positions=${positions} triangles=${triangles} values=${values} shape=${shape} amplitude=${(DRAWN * side) / most(sizes)}
+      label=${`${chosen.name}, ${chosen.frequency}, in motion; its numbers stand in the table`} quantity=${isStress ? 'Equivalent stress' : 'Displacement'} unit=${isStress ? 'MPa/µm' : ''} />
+      <div class="row">${chosen.peak_stress !== null && html`<label for="modes-colour">Colours</label><${Select} id="modes-colour" value=${isStress ? 'stress' : 'displacement'} data-test="colour"
+        choices=${[['displacement', 'Displacement'], ['stress', 'Stress']]} onChange=${(event) => change({view: {colour: event.target.value}})} />`}
+        <span class="hint">Over the displacement of ${chosen.reference}.</span></div></div>
     <div class="table-frame" tabindex="0" role="group" aria-label="Modes"><table class="table" data-test="mode-table">
-      <caption>Choose a mode to see it. Ends and nodal planes are those of the cross-sections along ${axis}: displacement of axial modes, deflection of bending ones, turn of torsional ones.</caption>
-      <thead><tr>${['Mode', 'Frequency', `End +${axis} over end -${axis}`, `Nodal planes from end -${axis}, mm`].map((head) => html`<th key=${head} scope="col">${head}</th>`)}</tr></thead>
+      <caption>Choose a mode to see it. Ends and nodal planes are of the cross-sections along ${axis}: displacement of axial modes, deflection of bending ones, turn of torsional ones.</caption>
+      <thead><tr>${heads.map((head) => html`<th key=${head} scope="col">${head}</th>`)}</tr></thead>
       <tbody>${modes.map((mode) => html`<tr key=${mode.name}><th scope="row"><label class="mode-choice"><input type="radio" name="mode" checked=${mode === chosen}
-        onChange=${() => change({view: {mode: mode.name}})} data-test=${`mode:${mode.name}`} /> ${mode.name}</label></th><td>${mode.frequency}</td><td>${ratio(mode)}</td><td>${planes(mode)}</td></tr>`)}</tbody>
+        onChange=${() => change({view: {mode: mode.name}})} data-test=${`mode:${mode.name}`} /> ${mode.name}</label></th><td>${mode.frequency}</td><td>${ratio(mode)}</td><td>${planes(mode)}</td>
+        ${mode.peak_stress !== null && html`<td>${mode.peak_stress.toPrecision(3)}</td>`}</tr>`)}</tbody>
     </table></div>
-    ${chosen.stress && html`<${Labelled} id="modes-colour" label="Colours"><${Select} id="modes-colour" value=${isStress ? 'stress' : 'displacement'} data-test="colour"
-      choices=${[['displacement', 'Displacement'], ['stress', 'Stress']]} onChange=${(event) => change({view: {colour: event.target.value}})} /><//>`}
-    <${MovingSurface} positions=${positions} triangles=${triangles} values=${values} shape=${shape} amplitude=${(DRAWN * side) / most(sizes)}
-      label=${`${chosen.name}, ${chosen.frequency}, in motion; its numbers stand in the table`} quantity=${isStress ? 'Equivalent stress' : `Displacement over that of ${chosen.reference}`}
-      unit=${isStress ? `MPa per µm of ${chosen.reference}` : ''} />
-  <//>`;
+  </div><//>`;
 }
 
 /** Answer of a job: modes, figures, drawing, numbers, caveats, files. */
