@@ -16,10 +16,14 @@ VIEWS: Final = {
     "recording": "sonolube.browser.recording_view:recording_view",
     "scan": "sonolube.browser.scan_view:scan_view",
     "section": "sonolube.browser.scan_view:section_view",
+    "parts": "sonolube.browser.mode_view:mode_parts",
     "rig": "sonolube.browser.rig_view:rig_view",
     "take": "sonolube.browser.take_away:taken",
 }
 """What pages ask for beside the answers of tasks, each by its name as `/api/{name}`."""
+
+WITH_MODES: Final = ("modes", "horn design", "impedance compute")
+"""Tasks whose jobs keep the modes of a part beside the files of their answers."""
 
 KINDS: VariantTable[Answering] = VariantTable(
     "kind of request",
