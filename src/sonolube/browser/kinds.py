@@ -10,6 +10,7 @@ Answering = Callable[[Mapping[str, Any], Places], dict[str, Any]]
 """Answers one kind of request."""
 
 VIEWS: Final = {
+    "files": "sonolube.browser.answer_files:answer_files",
     "rig": "sonolube.browser.rig_view:rig_view",
     "take": "sonolube.browser.take_away:taken",
 }
@@ -17,10 +18,6 @@ VIEWS: Final = {
 
 KINDS: VariantTable[Answering] = VariantTable(
     "kind of request",
-    {
-        "task": "sonolube.browser.answers:task_answer",
-        "description": "sonolube.browser.answers:description",
-        **VIEWS,
-    },
+    {"task": "sonolube.browser.answers:task_answer", "description": "sonolube.browser.answers:description", **VIEWS},
 )
 """Functions that answer each kind of request."""

@@ -125,10 +125,10 @@ function ChartTables({tables: latest, name}) {
 /**
  * @param {{name: string, caption?: string, chart: Object, tables?: Object[], dimmed?: boolean,
  *   kept?: {label: string, chart: Object}[], onPick?: (place: {panel: number, x: number, y: number}) => void,
- *   canPick?: (panel: number) => boolean,
+ *   canPick?: (panel: number) => boolean, picks?: string, onRead?: (point: Object|null) => void, ringed?: {x: number, y: number},
  *   drag?: {panel: number, onMove: (x: number) => void, onRelease: (x: number) => void}[]}} props
  */
-export function Chart({name, caption, chart, tables, dimmed, kept = NO_KEPT, onPick, canPick, drag}) {
+export function Chart({name, caption, chart, tables, dimmed, kept = NO_KEPT, onPick, canPick, picks, onRead, ringed, drag}) {
   const [figure, width, theme] = useRoom();
   const [said, say] = useState('');
   const keptCharts = useMemo(() => kept.map((each) => each.chart), [kept]);
@@ -160,7 +160,7 @@ export function Chart({name, caption, chart, tables, dimmed, kept = NO_KEPT, onP
             ${legend === 'panels' && html`<${Legend} theme=${theme} entries=${entriesOf([panel])} />`}
             <div class="chart-row">
               <${ChartPanel} panel=${panel} place=${place} ranges=${ranges[place]} behind=${behind[place]} width=${size.width}
-                height=${size.height + (hasXText(place) ? TEXT_HEIGHT : 0)} hasXText=${hasXText(place)} theme=${theme} drag=${drag?.find((each) => each.panel === place)} onPick=${!canPick || canPick(place) ? onPick : undefined} say=${say} />
+                height=${size.height + (hasXText(place) ? TEXT_HEIGHT : 0)} hasXText=${hasXText(place)} theme=${theme} drag=${drag?.find((each) => each.panel === place)} onPick=${!canPick || canPick(place) ? onPick : undefined} picks=${picks} onRead=${onRead} ringed=${ringed} say=${say} />
               ${field && html`<${ColourScale} field=${field} height=${size.height - 20} />`}
             </div></div>`;
         })}
