@@ -434,6 +434,7 @@ MODES = {
         (RIG, "--target-friction", "0.15"),
         {
             "--target-friction": "0.2",
+            "--target-reduction": "50%",
             "--over": "structure.tip_mass=80g:120g",
             "--actuator": "catalogue",
             "--catalogue": "FOLDER/catalogue.toml",
@@ -476,6 +477,7 @@ MODES = {
             "--rate": "4kHz",
             "--noise": "0.01N",
             "--factor": "1.1",
+            "--disturbance": "20%",
             "--closed-loop": "5ms",
             "--voltage-limit": "20V",
             "--current-limit": "4A",

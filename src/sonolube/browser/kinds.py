@@ -17,6 +17,7 @@ VIEWS: Final = {
     "scan": "sonolube.browser.scan_view:scan_view",
     "section": "sonolube.browser.scan_view:section_view",
     "parts": "sonolube.browser.mode_view:mode_parts",
+    "files": "sonolube.browser.answer_files:answer_files",
     "rig": "sonolube.browser.rig_view:rig_view",
     "take": "sonolube.browser.take_away:taken",
 }

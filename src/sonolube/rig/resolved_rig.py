@@ -211,7 +211,7 @@ def amplitude_labels(rig: Rig | ResolvedRig) -> dict[str, str]:
 def source_caveats(resolved: ResolvedRig, *, vibration_amplitude: float) -> tuple[str, ...]:
     """Line where the amplitudes of two sources of a rig differ by more than their error, at its own drive."""
     taken = resolved.vibration.source
-    found = {source: resolved.amplitude_by(source) for source in resolved.sources if source != taken}
+    found = {source: _amplitude_beside(resolved, source) for source in resolved.sources if source != taken}
     error = {
         source: amplitude_source.AMPLITUDE_ERROR * max(other, vibration_amplitude) for source, other in found.items()
     }
@@ -226,6 +226,14 @@ def source_caveats(resolved: ResolvedRig, *, vibration_amplitude: float) -> tupl
         f"the amplitudes differ by more than their error of {100 * amplitude_source.AMPLITUDE_ERROR:.0f} %: {taken}"
         f" {format_si(vibration_amplitude, 'm')}, taken here, and {', '.join(others)}",
     )
+
+
+def _amplitude_beside(resolved: ResolvedRig, source: AmplitudeSource) -> float:
+    """Amplitude by a source that is not taken; NaN where the rig has none by it. [m]"""
+    try:
+        return resolved.amplitude_by(source)
+    except SonolubeError:
+        return float("nan")
 
 
 def held_back_caveats(resolved: ResolvedRig, *, vibration_amplitude: float) -> tuple[str, ...]:
