@@ -44,9 +44,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
 
 
 @pytest.mark.parametrize("hand", HANDS)
-def test_recordings_lead_to_a_prediction_with_own_runs(
-    hand: type[Mouse], page: Page, files: tuple[Path, Path]
-) -> None:
+def test_recordings_lead_to_a_prediction_with_own_runs(hand: type[Mouse], page: Page, files: tuple[Path, Path]) -> None:
     walk = hand(page, "tribologist")
     walk.press("page:data")
     expect(page.get_by_test_id("choose-files")).to_be_visible()

@@ -64,4 +64,3 @@ def test_the_first_page_names_each_module_that_its_modules_import() -> None:
 def test_the_first_page_transfers_at_most_150_kilobytes() -> None:
     files = [STATIC / "index.html", *first_files()]
     assert sum(len(gzip.compress(path.read_bytes())) for path in files) <= 150_000
-
