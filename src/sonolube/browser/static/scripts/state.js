@@ -68,7 +68,8 @@ export async function pack(text) {
   return {code, fits};
 }
 
-async function unpack(code) {
+/** Text of a code of `pack`. @param {string} code @returns {Promise<string>} */
+export async function unpack(code) {
   if (code.startsWith(KEPT_PREFIX)) return stored('sessionStorage', code);
   const binary = atob(code.replaceAll('-', '+').replaceAll('_', '/'));
   const bytes = Uint8Array.from(binary, (letter) => letter.charCodeAt(0));

@@ -20,7 +20,8 @@ export function offer(task, args) {
   };
 }
 
-function save({name, kind, text}) {
+/** Save a text as a file. @param {{name: string, kind: string, text: string}} file */
+export function save({name, kind, text}) {
   const address = URL.createObjectURL(new Blob([text], {type: kind}));
   const link = document.createElement('a');
   link.href = address;
