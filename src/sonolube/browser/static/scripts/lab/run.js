@@ -29,7 +29,7 @@ const Limit = ({label, unit, value, limit, share}) => html`<li class=${classes('
 
 /** @param {{run: Object, devices: Object, isHolder: boolean, ask: (what: string, more?: Object) => any}} properties */
 export function RunCard({run, devices, isHolder, ask}) {
-  const {frame, kept, latest} = useLive(run.id, isAtWork(run));
+  const {frame, kept} = useLive(run.id, isAtWork(run));
   const isGone = useConnection().connection !== 'ok';
   const now = {...run, ...(isAtWork(run) && frame)};
   const word = isAtWork(now) ? now.state : now.outcome || now.state;
@@ -45,7 +45,7 @@ export function RunCard({run, devices, isHolder, ask}) {
     ${now.reason && html`<p data-test="run-reason">Ended: ${now.reason}</p>`}
     ${now.trips?.length > 0 && html`<${Warning}>${now.trips.map((trip) => html`<p key=${trip}>${trip}</p>`)}<//>`}
     ${now.prompt && isAtWork(now) && html`<${Prompt} prompt=${now.prompt} confirm=${isHolder && confirm} />`}
-    <${Strips} channels=${devices.channels} kept=${kept} latest=${latest} />
+    <${Strips} channels=${devices.channels} kept=${kept} time=${now.time ?? 0} />
     ${isAtWork(now) && frame?.limits?.length > 0 && html`<h3>How near the limits are</h3><ul class="limits" data-test="limits">${frame.limits.map((each) => html`<${Limit} key=${each.label} ...${each} />`)}</ul>`}
     <p class="hint">${now.is_virtual ? `Virtual rig ${now.rig}, seed ${now.seed}` : devices.title}${now.folder && `; recorded in ${now.folder}`}</p>
   <//>`;

@@ -1,5 +1,5 @@
 /** Live channels: frames of the run at work as they come, and the last seconds of each channel as a strip on a canvas. */
-import {html, useEffect, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
+import {html, useEffect, useLayoutEffect, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {roundTicks, short, themeOf} from '../chart-scale.js';
 import {useEvents} from '../parts.js';
 import {look} from './lab.js';
@@ -7,7 +7,6 @@ import {look} from './lab.js';
 
 const SPAN = 20; // s on a strip
 const AGAIN = 1000; // ms after a stream has ended
-const TEXTS = 5; // looks of the texts in a second of the run
 const [LEFT, BOTTOM, TICK] = [48, 16, 24]; // px for numbers, times, and of a number's room
 const COLOUR = '#0072b2';
 const MARGIN = 0.15; // of the range, above and below
@@ -34,20 +33,15 @@ async function read(take, signal) {
   }
 }
 
-/** Frames of a run while it is at work: the last one, some times a second, and what draws every one. @param {string} [run] @param {boolean} isFollowed @returns {{frame: Object|null, kept: Map<string, Slice[]>, latest: {current: Object}}} */
+/** Last frame of a run while it is at work, and the slices of each channel. @param {string} run @param {boolean} isFollowed @returns {{frame: Object|null, kept: Map<string, Slice[]>}} */
 export function useLive(run, isFollowed) {
   const [{frame, kept}, show] = useState({frame: null, kept: new Map()});
-  const latest = useRef(null);
   useEffect(() => {
     if (!isFollowed) return undefined;
     const [slices, end] = [new Map(), new AbortController()];
-    let shown = '';
     const take = (next) => {
       enter(slices, next.channels ?? {});
-      latest.current = next;
-      const texts = JSON.stringify([next.state, next.step, next.prompt, next.trips, Math.floor(next.time * TEXTS)]);
-      if (texts !== shown) show({frame: next, kept: slices});
-      shown = texts;
+      show({frame: next, kept: slices});
     };
     const follow = async () => {
       await read(take, end.signal).catch(() => null);
@@ -58,7 +52,7 @@ export function useLive(run, isFollowed) {
     follow();
     return () => end.abort();
   }, [run, isFollowed]);
-  return {frame: frame?.id === run ? frame : null, kept, latest};
+  return frame?.id === run ? {frame, kept} : {frame: null, kept};
 }
 
 /** Ends of an axis that hold all slices; those of before while they fit, so that the axis stands still. */
@@ -101,32 +95,21 @@ function draw(canvas, slices, start, [low, high], theme) {
   paint.stroke();
 }
 
-/** Strips of the channels that have slices; with reduced motion they fill page by page rather than move. @param {{channels: {name: string, label: string, unit: string}[], kept: Map<string, Slice[]>, latest: {current: Object}}} properties */
-export function Strips({channels, kept, latest}) {
-  const [host, theme] = [useRef(null), useRef(null)];
-  useEvents(['themechange'], () => { theme.current = null; });
-  useEffect(() => {
-    const ends = new Map();
-    const isStill = matchMedia('(prefers-reduced-motion: reduce)').matches;
-    let [turn, drawn] = [0, null];
-    const paint = () => {
-      turn = requestAnimationFrame(paint);
-      const time = latest.current?.time ?? 0;
-      const now = `${time} ${host.current.clientWidth} ${host.current.childElementCount}`;
-      if (now === drawn && theme.current) return;
-      drawn = now;
-      theme.current ??= themeOf(host.current);
-      const start = isStill ? Math.floor(time / SPAN) * SPAN : Math.max(0, time - SPAN);
-      for (const canvas of host.current.querySelectorAll('canvas')) {
-        const {name} = canvas.dataset;
-        const slices = (kept.get(name) ?? []).filter((slice) => slice[0] >= start);
-        ends.set(name, endsOf(slices, ends.get(name)));
-        draw(canvas, slices, start, ends.get(name), theme.current);
-      }
-    };
-    paint();
-    return () => cancelAnimationFrame(turn);
-  }, [kept]);
+/** Strips of the channels that have slices; with reduced motion they fill page by page rather than move. @param {{channels: {name: string, label: string, unit: string}[], kept: Map<string, Slice[]>, time: number}} properties */
+export function Strips({channels, kept, time}) {
+  const [host, ends] = [useRef(null), useRef(new Map())];
+  const [turn, drawAgain] = useState({});
+  useEvents(['themechange', 'resize'], () => drawAgain({}));
+  useLayoutEffect(() => {
+    const theme = themeOf(host.current);
+    const start = matchMedia('(prefers-reduced-motion: reduce)').matches ? Math.floor(time / SPAN) * SPAN : Math.max(0, time - SPAN);
+    for (const canvas of host.current.querySelectorAll('canvas')) {
+      const {name} = canvas.dataset;
+      const slices = kept.get(name).filter((slice) => slice[0] >= start);
+      ends.current.set(name, endsOf(slices, ends.current.get(name)));
+      draw(canvas, slices, start, ends.current.get(name), theme);
+    }
+  }, [kept, time, turn]);
   return html`<div class="strips" ref=${host} data-test="strips">${channels.filter(({name}) => kept.has(name)).map(({name, label, unit}) => {
     const [, lowest, highest, mean] = kept.get(name).at(-1) ?? [];
     return html`<figure key=${name}><figcaption>${label} <strong data-test=${`now:${name}`}>${short(mean, 3)} ${unit}</strong>${' '}
