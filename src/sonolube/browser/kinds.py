@@ -12,6 +12,8 @@ Answering = Callable[[Mapping[str, Any], Places], dict[str, Any]]
 VIEWS: Final = {
     "rig": "sonolube.browser.rig_view:rig_view",
     "take": "sonolube.browser.take_away:taken",
+    "protocol": "sonolube.browser.lab.protocol_view:protocol_view",
+    "edit_protocol": "sonolube.browser.lab.protocol_view:edited_protocol",
 }
 """What pages ask for beside the answers of tasks, each by its name as `/api/{name}`."""
 
@@ -20,6 +22,13 @@ KINDS: VariantTable[Answering] = VariantTable(
     {
         "task": "sonolube.browser.answers:task_answer",
         "description": "sonolube.browser.answers:description",
+        "lab_devices": "sonolube.browser.lab.plan_view:devices",
+        "lab_plan": "sonolube.browser.lab.plan_view:plan",
+        "lab_runs": "sonolube.browser.lab.runs_view:runs",
+        "lab_show": "sonolube.browser.lab.runs_view:shown",
+        "lab_recording": "sonolube.browser.lab.runs_view:recording",
+        "lab_compare": "sonolube.browser.lab.runs_view:compared",
+        "lab_recover": "sonolube.browser.lab.runs_view:recovered",
         **VIEWS,
     },
 )

@@ -24,6 +24,7 @@ from sonolube.laboratory.run_plan import (
 )
 from sonolube.laboratory.states import Event, RunControl, RunEnded, RunState
 from sonolube.laboratory.supervised_run import Advance, Sampling, SupervisedRun
+from sonolube.laboratory.watching import RunWatcher, told
 from sonolube.storage.interruption import asked_by_signal, undone_at_signal
 from sonolube.text.units import format_si
 
@@ -41,6 +42,7 @@ def run_protocol(
     operator: Operator,
     control: RunControl | None = None,
     advance: Advance | None = None,
+    watcher: RunWatcher | None = None,
 ) -> RunState:
     """Run a protocol on devices and record it.
 
@@ -57,6 +59,8 @@ def run_protocol(
         Requests of others.
     advance : callable, optional
         Reports progress.
+    watcher : RunWatcher, optional
+        Shown set points, blocks and events.
 
     Returns
     -------
@@ -77,7 +81,7 @@ def run_protocol(
     """
     require_possible(protocol, devices)
     control = control or RunControl()
-    run = _Run(protocol, devices, recorder, operator, control)
+    run = _Run(protocol, devices, recorder, operator, control, watcher)
     with undone_at_signal(run.halt), asked_by_signal(control.stop):
         return run.complete(advance)
 
@@ -86,9 +90,15 @@ class _Run(SupervisedRun):
     """One run of a protocol."""
 
     def __init__(
-        self, protocol: Protocol, devices: Devices, recorder: Recorder, operator: Operator, control: RunControl
+        self,
+        protocol: Protocol,
+        devices: Devices,
+        recorder: Recorder,
+        operator: Operator,
+        control: RunControl,
+        watcher: RunWatcher | None,
     ) -> None:
-        super().__init__(devices, recorder, control)
+        super().__init__(devices, recorder, control, watcher)
         self._protocol, self._operator = protocol, operator
         self._points = flattened(protocol)
         self._point = self._points[0]
@@ -98,7 +108,10 @@ class _Run(SupervisedRun):
         self._standing = StandingRig(self._devices, locks, protocol.limits, sample_rate=rate)
         measured = [SPEED_CHANNEL] if speed_checks(protocol) else []
         self._clocks = OwnClocks(devices, locks, off_bounds(devices, protocol.limits))
-        self._sampling = Sampling(self._devices.acquisition, recorder, locks, beside=self._clocks, also=measured)
+        self._sampling = Sampling(
+            self._devices.acquisition, recorder, locks, beside=self._clocks, also=measured, watcher=watcher
+        )
+        told(watcher, lambda each: each.begins(devices.channels, locks))
         self._drive: DriveSetting | None = None
         self._turns = 0.0
         self._conditions: dict[str, float | str] = {"lubricant": ""}
@@ -135,6 +148,7 @@ class _Run(SupervisedRun):
     def _reach(self, point: SetPoint) -> None:
         """Set the set points with which a step begins, or begin its recording."""
         self._point = point
+        told(self._watcher, lambda watcher: watcher.reaches(point))
         step = step_at(self._protocol, point.step)
         if isinstance(step, Prompt):
             self._ask(step)
