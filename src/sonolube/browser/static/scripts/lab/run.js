@@ -3,7 +3,7 @@ import {html, useEffect, useRef} from '../../vendor/htm-preact-3.1.1.js';
 import {useConnection} from '../api.js';
 import {short} from '../chart-scale.js';
 import {duration} from '../job.js';
-import {Button, Card, classes, Warning} from '../parts.js';
+import {Button, capital, Card, classes, Warning} from '../parts.js';
 import {isAtWork} from './lab.js';
 import {Strips, useLive} from './strips.js';
 
@@ -24,8 +24,8 @@ function Prompt({prompt, confirm}) {
 }
 
 const Limit = ({label, unit, value, limit, share}) => html`<li class=${classes('limit', {'is-near': share >= NEAR})}>
-  <span>${label}</span><meter min="0" max="1" high=${NEAR} optimum="0" value=${Math.min(share, 1)} aria-label=${label}></meter>
-  <span>${short(value, 3)} of ${short(limit, 3)} ${unit}, <strong>${Math.round(100 * share)} %${share >= NEAR ? ' ⚠ near the limit' : ''}</strong></span></li>`;
+  <span>${capital(label)}</span><meter min="0" max="1" high=${NEAR} optimum="0" value=${Math.min(share ?? 0, 1)} aria-label=${label}></meter>
+  <span>${short(value, 3)} of ${short(limit, 3)} ${unit}, <strong>${share == null ? '–' : Math.round(100 * share)} %${share >= NEAR ? ' ⚠ near the limit' : ''}</strong></span></li>`;
 
 /** @param {{run: Object, devices: Object, isHolder: boolean, ask: (what: string, more?: Object) => any}} properties */
 export function RunCard({run, devices, isHolder, ask}) {
@@ -36,13 +36,13 @@ export function RunCard({run, devices, isHolder, ask}) {
   const confirm = (isDone) => ask('confirm', {text: now.prompt.text, is_done: isDone});
   return html`<${Card} id="run-title" title=${now.title || now.protocol} data-test="run">
     <p class="row"><span class=${`run-state is-${word}`} role="status" data-test="run-state"><span aria-hidden="true">${SIGNS[word]}</span> ${word}${isGone && ' when last seen'}</span>
-      <span data-test="run-step">${now.step && `step ${now.step} of ${now.steps}`}${now.doing && `: ${now.doing}`}</span></p>
+      <span data-test="run-step">${now.step && `step ${now.step} of ${now.steps}`}${now.doing && `: ${now.doing.replace(/^step [\d.]+, /, '')}`}</span></p>
     ${OFF[now.state] && html`<${Warning} data-test="cut-power"><strong class="cut-power">${OFF[now.state]}</strong><//>`}
     <p class="row"><progress class="grow" max=${now.total || 1} value=${now.time ?? 0} aria-label="Time of the protocol"></progress>
       <span data-test="run-time">${duration(now.time ?? 0)} of ${duration(now.total ?? 0)}</span>
       ${isHolder && now.state === 'running' && html`<${Button} onClick=${() => ask('pause')} data-test="pause">Pause<//>`}
       ${isHolder && now.is_paused && !now.prompt && html`<${Button} kind="button is-main" onClick=${() => ask('resume')} data-test="resume">Resume<//>`}</p>
-    ${now.reason && html`<p data-test="run-reason">Ended: ${now.reason}</p>`}
+    ${now.outcome && now.reason && html`<p data-test="run-reason">Ended: ${now.reason}</p>`}
     ${now.trips?.length > 0 && html`<${Warning}>${now.trips.map((trip) => html`<p key=${trip}>${trip}</p>`)}<//>`}
     ${now.prompt && isAtWork(now) && html`<${Prompt} prompt=${now.prompt} confirm=${isHolder && confirm} />`}
     <${Strips} channels=${devices.channels} kept=${kept} time=${now.time ?? 0} />

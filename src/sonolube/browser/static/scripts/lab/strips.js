@@ -1,7 +1,7 @@
 /** Live channels: frames of the run at work as they come, and the last seconds of each channel as a strip on a canvas. */
 import {html, useEffect, useLayoutEffect, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {roundTicks, short, themeOf} from '../chart-scale.js';
-import {useEvents} from '../parts.js';
+import {capital, useEvents} from '../parts.js';
 import {look} from './lab.js';
 /** @typedef {[number, number, number, number]} Slice time, lowest, highest, mean */
 
@@ -9,6 +9,7 @@ const SPAN = 20; // s on a strip
 const AGAIN = 1000; // ms after a stream has ended
 const [LEFT, BOTTOM, TICK] = [48, 16, 24]; // px for numbers, times, and of a number's room
 const COLOUR = '#0072b2';
+const NONE = new Map();
 const MARGIN = 0.15; // of the range, above and below
 
 /** Enter the slices of a frame into those that are kept, which begin before the strip does. @param {Map<string, Slice[]>} kept @param {Object<string, Slice[]>} channels */
@@ -35,13 +36,13 @@ async function read(take, signal) {
 
 /** Last frame of a run while it is at work, and the slices of each channel. @param {string} run @param {boolean} isFollowed @returns {{frame: Object|null, kept: Map<string, Slice[]>}} */
 export function useLive(run, isFollowed) {
-  const [{frame, kept}, show] = useState({frame: null, kept: new Map()});
+  const [{of, frame, kept}, show] = useState({});
   useEffect(() => {
     if (!isFollowed) return undefined;
     const [slices, end] = [new Map(), new AbortController()];
     const take = (next) => {
       enter(slices, next.channels ?? {});
-      show({frame: next, kept: slices});
+      show({of: run, frame: next, kept: slices});
     };
     const follow = async () => {
       await read(take, end.signal).catch(() => null);
@@ -52,7 +53,7 @@ export function useLive(run, isFollowed) {
     follow();
     return () => end.abort();
   }, [run, isFollowed]);
-  return frame?.id === run ? {frame, kept} : {frame: null, kept};
+  return of === run ? {frame, kept} : {frame: null, kept: NONE};
 }
 
 /** Ends of an axis that hold all slices; those of before while they fit, so that the axis stands still. */
@@ -112,7 +113,7 @@ export function Strips({channels, kept, time}) {
   }, [kept, time, turn]);
   return html`<div class="strips" ref=${host} data-test="strips">${channels.filter(({name}) => kept.has(name)).map(({name, label, unit}) => {
     const [, lowest, highest, mean] = kept.get(name).at(-1) ?? [];
-    return html`<figure key=${name}><figcaption>${label} <strong data-test=${`now:${name}`}>${short(mean, 3)} ${unit}</strong>${' '}
+    return html`<figure key=${name}><figcaption>${capital(label)} <strong data-test=${`now:${name}`}>${short(mean, 3)} ${unit}</strong>${' '}
       <span class="hint">${short(lowest, 3)} to ${short(highest, 3)}</span></figcaption>
       <canvas data-name=${name} role="img" aria-label=${`${label}: the last ${SPAN} s; its latest values stand above`}></canvas></figure>`;
   })}</div>`;

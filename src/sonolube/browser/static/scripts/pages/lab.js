@@ -41,7 +41,7 @@ function Plan({lab, named, reply, rig, setEdited, start}) {
   const choices = lab.protocols.map(({name, title}) => [name, title]);
   return html`<${Card} id="plan-title" title="Protocol" data-test="plan">
     <${RigChoice} view=${useRig().view} /><label for="protocol">Protocol</label><div class="row">
-      <${Select} id="protocol" class="grow" choices=${isOwn ? [['', `${content?.title ?? named.name} (edited)`], ...choices] : choices} value=${isOwn ? '' : named?.name}
+      <${Select} id="protocol" class="grow" choices=${isOwn ? [['', `${content?.title ?? named.name} (own)`], ...choices] : choices} value=${isOwn ? '' : named?.name}
         onChange=${(event) => change({view: {protocol: event.target.value, steps: null}})} data-test="protocol" />
       <${FileButton} accept=".toml" label="Protocol file" onFile=${async (file) => keep(file.name.replace(/\.toml$/i, ''), await file.text())} test="protocol-file" data-test="open-protocol">Open…<//>
       <${Button} onClick=${() => save({name: `${named.name}.toml`, kind: 'application/toml', text: content.text})} disabled=${!content} data-test="save-protocol">Save as TOML<//></div>
