@@ -93,6 +93,7 @@ def run(
                 server_header=False,
                 lifespan="off",
                 timeout_keep_alive=30,
+                timeout_graceful_shutdown=2,  # of what never ends by itself, such as the frames of a run
                 limit_concurrency=2000,
                 h11_max_incomplete_event_size=64 * 1024,
             ),

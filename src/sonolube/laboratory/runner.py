@@ -10,7 +10,7 @@ from sonolube.facts.protocol import Check, Prompt, Protocol, SetPoint, flattened
 from sonolube.laboratory.block import BLOCK_DURATION
 from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting, Recorder
 from sonolube.laboratory.interlocks import drive_sampling, idle_rate, interlocks_for, set_point_trip
-from sonolube.laboratory.own_clocks import OwnClocks, StandingRig, off_bounds
+from sonolube.laboratory.own_clocks import OwnClocks
 from sonolube.laboratory.run_plan import (
     SETTLING,
     SPEED_CHANNEL,
@@ -22,6 +22,7 @@ from sonolube.laboratory.run_plan import (
     rotation_speed,
     speed_checks,
 )
+from sonolube.laboratory.standing_rig import StandingRig, off_bounds
 from sonolube.laboratory.states import Event, RunControl, RunEnded, RunState
 from sonolube.laboratory.supervised_run import Advance, Sampling, SupervisedRun
 from sonolube.laboratory.watching import RunWatcher, told
@@ -105,9 +106,9 @@ class _Run(SupervisedRun):
         self._diameter = groove_diameter(protocol, devices)
         locks = interlocks_for(protocol.limits, devices.channels, drive_sampling(protocol))
         rate = idle_rate(self._points)
-        self._standing = StandingRig(self._devices, locks, protocol.limits, sample_rate=rate)
+        self._standing = StandingRig(self._devices, locks, protocol.limits, sample_rate=rate, watcher=watcher)
         measured = [SPEED_CHANNEL] if speed_checks(protocol) else []
-        self._clocks = OwnClocks(devices, locks, off_bounds(devices, protocol.limits))
+        self._clocks = OwnClocks(devices, locks, off_bounds(devices, protocol.limits), watcher)
         self._sampling = Sampling(
             self._devices.acquisition, recorder, locks, beside=self._clocks, also=measured, watcher=watcher
         )

@@ -31,6 +31,12 @@ class RunWatcher(Protocol):
     def takes(self, names: Sequence[str], block: Block, *, time: float) -> None:
         """Take a block of channels, whose first sample is at a time of the protocol, in s."""
 
+    def takes_aside(self, names: Sequence[str], block: Block) -> None:
+        """Take a block that the clock of the protocol does not time: of another clock, or while an operator is asked.
+
+        Called by other threads than that of the run.
+        """
+
     def notes(self, kind: str, facts: Mapping[str, str | float]) -> None:
         """Take an event as the record has it."""
 

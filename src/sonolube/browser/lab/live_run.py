@@ -43,7 +43,7 @@ class LiveRun:
 
     def __init__(self, about: Mapping[str, Any], control: RunControl) -> None:
         self._about, self._control = dict(about), control
-        self._waiting: deque[tuple[tuple[str, ...], Block, float]] = deque(maxlen=_WAITING)
+        self._waiting: deque[tuple[tuple[str, ...], Block, float | None]] = deque(maxlen=_WAITING)
         self._slices: deque[Slice] = deque(maxlen=_KEPT)
         self._held, self._next = Lock(), 0
         self._locks: list[Interlock] = []
@@ -77,6 +77,11 @@ class LiveRun:
         """Take a block."""
         self._waiting.append((tuple(names), block, time))
         self._time = time + block.samples / block.sample_rate
+
+    def takes_aside(self, names: Sequence[str], block: Block) -> None:
+        """Take a block of another clock at the present time; while the rig stands, for the limits alone."""
+        time = self._time - block.samples / block.sample_rate if self._state == "running" else None
+        self._waiting.append((tuple(names), block, time))
 
     def notes(self, kind: str, facts: Mapping[str, str | float]) -> None:
         """Take an event."""
@@ -188,9 +193,9 @@ class LiveRun:
                 self._take_slices(*self._waiting.popleft())
             wait.wait(_POLL)
 
-    def _take_slices(self, names: tuple[str, ...], block: Block, time: float) -> None:
+    def _take_slices(self, names: tuple[str, ...], block: Block, time: float | None) -> None:
         """Take the slices of a block, and what of it is the nearest to the limits."""
-        found = slices_of(names, block, time)
+        found = [] if time is None else slices_of(names, block, time)
         values = {name: block.values[:, place] for place, name in enumerate(names)}
         for lock in self._locks:
             samples = values.get(lock.channel.name)

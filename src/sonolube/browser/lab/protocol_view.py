@@ -122,7 +122,7 @@ def _steps(content: Mapping[str, Any], points: tuple[SetPoint, ...]) -> list[dic
             "depth": step.depth,
             "kind": step.kind,
             "label": step.kind.replace("_", " "),
-            "start": (starts[step.number] or [None])[0],
+            "start": next(iter(starts[step.number]), None),
             "duration": _duration(step.number, step.kind, points, lasts),
             "starts": starts[step.number][:_STARTS],
             "fields": [_field(each) for each in step.fields],

@@ -20,7 +20,7 @@ from sonolube.errors import SonolubeError
 from sonolube.laboratory import RunControl
 from sonolube.operating_system import process_start
 from sonolube.storage.files import locked_folder
-from sonolube.storage.interruption import end_program_at_signals
+from sonolube.storage.interruption import end_program_at_signals, undone_at_signal
 
 _AT_WORK: Final = "at-work"
 
@@ -58,7 +58,9 @@ def main(folder: Path) -> None:
     )
     write_private(folder / RUNNER, live.known)
     try:
-        with locked_folder(folder.parent / _AT_WORK, purpose="run of the laboratory"):
+        with ExitStack() as stack:
+            stack.enter_context(undone_at_signal(lambda: _note_early_end(live, folder)))
+            stack.enter_context(locked_folder(folder.parent / _AT_WORK, purpose="run of the laboratory"))
             ended = _followed(request, live, control)
     except SonolubeError as failure:
         ended = _broken(live, str(failure))
@@ -74,6 +76,13 @@ def _broken(live: LiveRun, reason: str) -> tuple[str, str, str]:
     """State, outcome and reason where the task gave no answer: before anything was connected, or after all is over."""
     state = live.status()["state"]
     return ("safe", "refused", reason) if state == "preparing" else (state, "failed", reason)
+
+
+def _note_early_end(live: LiveRun, folder: Path) -> None:
+    """Record an end by a signal before anything was connected; later ones are ends of the run."""
+    if live.status()["state"] == "preparing":
+        live.end("safe", "refused", "ended by a signal before anything was connected")
+        write_private(folder / END, live.status())
 
 
 def _followed(request: Mapping[str, Any], live: LiveRun, control: RunControl) -> tuple[str, str, str]:

@@ -84,7 +84,9 @@ class RunnerRecord:
     @property
     def is_lost(self) -> bool:
         """Whether it was at work and has died without an orderly end."""
-        return self.process is not None and self.end is None and not self.is_alive
+        if self.process is None or self.end is not None or self.is_alive:
+            return False
+        return _read(self.folder / END) is None  # it may have ended since this record was read
 
     @property
     def access(self) -> Access:
