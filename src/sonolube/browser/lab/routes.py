@@ -12,6 +12,7 @@ from collections.abc import AsyncIterator, Mapping
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
+from threading import Thread
 from typing import Any, Final
 
 from starlette.requests import Request
@@ -61,7 +62,6 @@ class Laboratory:
     def __init__(self, *, pool: Pool, uploads: Uploads, places: Places, folder: Path) -> None:
         self._pool, self._uploads, self._places, self._folder = pool, uploads, places, folder
         self._hold = Hold(folder)
-        self._started: dict[str, subprocess.Popen[bytes]] = {}
         self._devices: dict[str, Any] | None = None
         self._starting = asyncio.Lock()
 
@@ -91,7 +91,6 @@ class Laboratory:
 
     def end(self) -> str:
         """Link of the stop page of a run that goes on without this process; empty where none is at work."""
-        self._reap()
         record = self._at_work()
         return "" if record is None else record.link()
 
@@ -106,7 +105,6 @@ class Laboratory:
             if status != 200:
                 return json_response(found, status=status)
             self._devices = found
-        self._reap()
         record, lost = self._latest(), self._lost()
         state = {
             "runs_folder": Path(self._places.runs).name,
@@ -162,7 +160,7 @@ class Laboratory:
                 start_new_session=True,  # no signal of this terminal reaches it
                 creationflags=flags,
             )
-        self._started[record.id] = process
+        Thread(target=process.wait, daemon=True, name="sonolube run").start()  # so that its end is noticed
         waited = 0.0
         while (record := read_record(self._folder, record.id)).process is None:
             if process.poll() is not None or waited > _STARTING:
@@ -183,7 +181,6 @@ class Laboratory:
     async def _stop(self, request: Request) -> Response:
         """State of the run after it was asked to stop, by anybody."""
         await content_of(request)
-        self._reap()
         record = self._require_at_work()
         try:
             await asked(record, "POST", "/stop")
@@ -252,7 +249,8 @@ class Laboratory:
             with suppress(InvalidInput):
                 found = await asked(record, "GET", "/status")
                 host = (request.url.hostname or "").lower()
-                return found | fixed | {"stop_link": record.link(host if host in _LOOPBACK else "127.0.0.1")}
+                link = record.link(host if host in _LOOPBACK else "127.0.0.1")
+                return found | fixed | {"stop_link": "" if found.get("is_ended") else link}
         record = read_record(self._folder, record.id)
         if record.end is not None:
             return {**record.end, **fixed}
@@ -285,18 +283,11 @@ class Laboratory:
 
     def _require_idle(self) -> None:
         """Raise where a run is at work, or was killed and not recovered."""
-        self._reap()
         if self._at_work() is not None:
             raise InvalidInput("a run is at work; wait for its end, or stop it")
         lost = self._lost()
         if lost is not None:
             raise InvalidInput(_LOST.format(title=str(lost.about.get("title", lost.id))), key="lost")
-
-    def _reap(self) -> None:
-        """Forget processes that have ended."""
-        for name, process in list(self._started.items()):
-            if process.poll() is not None:
-                del self._started[name]
 
 
 def _holder(content: Mapping[str, Any]) -> str:
