@@ -86,7 +86,6 @@ class Laboratory:
 
     def is_at_work(self) -> bool:
         """Whether a run is at work."""
-        self._reap()
         return self._at_work() is not None
 
     def end(self) -> str:

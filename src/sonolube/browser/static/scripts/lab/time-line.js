@@ -22,6 +22,9 @@ function endOf(steps, at) {
   return next < 0 ? steps.length : next;
 }
 
+/** What stands on a block: its entries, or its kind. */
+const textOf = ({label, fields}) => fields.map(({text}) => text).filter(Boolean).join(', ') || label;
+
 /** Number of the step so many further in its list of steps. */
 const beside = (number, by) => [...number.split('.').slice(0, -1), Number(number.split('.').at(-1)) + by].join('.');
 
@@ -74,8 +77,8 @@ export function TimeLine({protocol: {steps, kinds, limits, metadata}, edit, star
       role="listbox" aria-orientation="horizontal" aria-label="Steps along time">
       ${lanes.map((lane, row) => html`<span key=${lane} class="lane" style=${{gridRow: row + 1}} aria-hidden="true">${LANES[lane]}</span>`)}
       ${steps.map((each, place) => html`<button type="button" key=${each.number} role="option" aria-selected=${place === at} tabindex=${place === at ? 0 : -1}
-        class=${classes(`block is-${laneOf(each)}`, {'is-chosen': place === at})} onClick=${() => choose(each.number)} title=${each.label} data-test=${`step:${each.number}`}
-        style=${{gridRow: lanes.indexOf(laneOf(each)) + 1, gridColumn: `${place + 2} / ${endOf(steps, place) + 2}`}}><b>${each.number}</b> ${each.label}</button>`)}
+        class=${classes(`block is-${laneOf(each)}`, {'is-chosen': place === at})} onClick=${() => choose(each.number)} title=${`${words(each.kind)}: ${textOf(each)}`} data-test=${`step:${each.number}`}
+        style=${{gridRow: lanes.indexOf(laneOf(each)) + 1, gridColumn: `${place + 2} / ${endOf(steps, place) + 2}`}}><b>${each.number}</b> ${textOf(each)}</button>`)}
       ${steps.map(({start}, place) => html`<span key=${place} class="lane-time" style=${{gridRow: lanes.length + 1, gridColumn: place + 2}} aria-hidden="true">${duration(start)}</span>`)}
     </div>
     <div class="row">
