@@ -13,14 +13,18 @@ import numpy as np
 import pytest
 from tests.browser.laboratory import HEAD, HOLDER, LONG, OTHER, RIG, SHORT, Asked, laboratory, stop_page, until
 from tests.browser.workbench import served
+from tests.laboratory.test_added_drivers import MAP, PROTOCOL, packages as packages_of_acme, written
 
 import sonolube as sl
 from sonolube.browser.lab.runner_records import laboratory_folder
+from sonolube.cli import main
 from sonolube.example_files import example_file
 from sonolube.laboratory.catalogue import catalogued_runs
 from sonolube.laboratory.records import Run, read_run
 from sonolube.operating_system import process_start
 from sonolube.tasks.files import NamedBytes
+
+packages = packages_of_acme
 
 
 @pytest.fixture
@@ -232,6 +236,39 @@ def test_a_killed_run_is_told_and_its_record_recovered_before_the_next(lab: Aske
     assert record.summary.samples > 0
     state = lab.state(HOLDER)
     assert (state["lost"], state["run"]["state"], state["run"]["is_lost"]) == (None, "lost", True)
+
+
+def test_devices_of_a_map_are_run_and_end_off(tmp_path: Path, packages: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(packages), os.environ.get("PYTHONPATH", "")]))
+    with laboratory(tmp_path, device_map=written(tmp_path, MAP)) as lab:
+        devices = lab.state()["devices"]
+        assert (devices["kind"], devices["title"]) == ("map", "Rig of Acme")
+        assert [(each["name"], each["unit"]) for each in devices["channels"]] == [
+            ("friction_force", "N"),
+            ("emission", "V"),
+        ]
+        fast = PROTOCOL.replace('"1 Hz"', '"200 Hz"')
+        assert lab.post("/api/lab/hold", {"holder": HOLDER})[0] == 200
+        asked = {"holder": HOLDER, "protocol": {"name": "fast", "text": fast}, "rig": None}
+        assert "turns at most at" in refused(lab, "start", asked)
+        lab.start(PROTOCOL)
+        ended = lab.run_when(lambda run: run["is_ended"])
+    assert (ended["state"], ended["outcome"], ended["seed"], ended["rig"]) == ("safe", "completed", None, "Rig of Acme")
+    assert record_of(tmp_path, ended).dataset()["friction_force"].to_numpy() == pytest.approx(0.5)
+    lines = (packages / "log.txt").read_text().splitlines()
+    assert lines[lines.index("drive 20 V 22000 Hz") + 1 :][:2] == ["drive off", "motor off"]
+    assert {"drive close", "motor close", "inputs close"} <= set(lines)
+
+
+@pytest.mark.parametrize(("text", "words"), [('title = "x"', "acquisition: missing"), ("[[", "not valid TOML")])
+def test_faults_of_a_map_are_one_line_before_anything_is_served(
+    text: str, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as end:
+        main(["app", "--no-browser", "--lab", str(written(tmp_path, text))])
+    assert end.value.code == 2
+    assert words in capsys.readouterr().err
 
 
 BAD = (

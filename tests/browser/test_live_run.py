@@ -18,7 +18,7 @@ def block(values: np.ndarray, *, sample_rate: float, first: int = 0) -> Block:
 @given(samples=st.integers(1, 400), sample_rate=st.sampled_from([400.0, 1000.0, 7999.0]), seed=st.integers(0, 99))
 def test_slices_hold_every_sample_once(samples: int, sample_rate: float, seed: int) -> None:
     values = np.random.default_rng(seed).normal(size=(samples, 2))
-    found = slices_of(("a", "b"), block(values, sample_rate=sample_rate), 2.0)
+    found = slices_of(("a", "b"), block(values, sample_rate=sample_rate), time=2.0)
     for place, name in enumerate(("a", "b")):
         own = values[:, place]
         assert min(each[name][0] for _, each in found) == own.min()
@@ -35,9 +35,9 @@ def test_slices_hold_every_sample_once(samples: int, sample_rate: float, seed: i
 
 def test_a_block_of_50_ms_gives_two_slices_whose_means_are_those_of_its_halves() -> None:
     ramp = np.arange(20.0)[:, np.newaxis]
-    found = slices_of(("a",), block(ramp, sample_rate=400.0), 1.0)
+    found = slices_of(("a",), block(ramp, sample_rate=400.0), time=1.0)
     assert found == [(approx(1.0125), {"a": (0.0, 9.0, 4.5)}), (approx(1.0375), {"a": (10.0, 19.0, 14.5)})]
-    assert slices_of(("a",), block(np.zeros((0, 1)), sample_rate=400.0), 1.0) == []
+    assert slices_of(("a",), block(np.zeros((0, 1)), sample_rate=400.0), time=1.0) == []
 
 
 def live_run() -> LiveRun:

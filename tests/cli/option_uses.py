@@ -67,7 +67,10 @@ EXECUTION = {"--once", "--force", "--real-time", "--yes", "--workers", "--schedu
 PLACES = {"--out", "--json", "--help", "--brief"}
 # A run takes a minute, or needs a test of its own; tests of these commands try them.
 TESTED_ELSEWHERE = {
-    *(("app", option) for option in ("--port", "--no-browser", "--host", "--token-file", "--allow-host")),
+    *(
+        ("app", option)
+        for option in ("--port", "--no-browser", "--host", "--token-file", "--allow-host", "--lab", "--runs")
+    ),
     ("reproduce", "--chapter"),
     ("uncertainty", "--identified"),
     ("identify rig", "--facts"),

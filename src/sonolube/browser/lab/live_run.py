@@ -195,7 +195,7 @@ class LiveRun:
 
     def _take_slices(self, names: tuple[str, ...], block: Block, time: float | None) -> None:
         """Take the slices of a block, and what of it is the nearest to the limits."""
-        found = [] if time is None else slices_of(names, block, time)
+        found = [] if time is None else slices_of(names, block, time=time)
         values = {name: block.values[:, place] for place, name in enumerate(names)}
         for lock in self._locks:
             samples = values.get(lock.channel.name)
@@ -210,7 +210,7 @@ class LiveRun:
 
 
 def slices_of(
-    names: Sequence[str], block: Block, time: float
+    names: Sequence[str], block: Block, *, time: float
 ) -> list[tuple[float, dict[str, tuple[float, float, float]]]]:
     """Slices of a block in equal parts of at most 40 ms: middle, and lowest, highest and mean value of each channel."""
     if not block.samples:

@@ -79,7 +79,7 @@ def _viewed(name: str, text: str, rig: Any, places: Places) -> dict[str, Any]:
     protocol, content = read_text(text)
     with ExitStack() as stack:
         known = None if rig is None else given_rig(rig, places, stack)
-        dry = run(NamedBytes(f"{name}.toml", text.encode()), rig=known, dry_run=True)
+        dry = run(NamedBytes(f"{name}.toml", text.encode("utf-8", "replace")), rig=known, dry_run=True)
     assert isinstance(dry, DryRunAnswer)
     points = flattened(protocol)
     limits = protocol.limits.model_dump()

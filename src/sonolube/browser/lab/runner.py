@@ -99,7 +99,7 @@ def _followed(request: Mapping[str, Any], live: LiveRun, control: RunControl) ->
         on = {"seed": request["seed"], "real_time": True}
     with ExitStack() as stack:
         answer = run(
-            NamedBytes(f"{name}.toml", text.encode()) if text else name,
+            NamedBytes(f"{name}.toml", text.encode("utf-8", "replace")) if text else name,
             rig=None if request["rig"] is None else given_rig(request["rig"], places, stack),
             anyway=request["anyway"],
             tag=request["tags"],

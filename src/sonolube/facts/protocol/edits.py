@@ -176,14 +176,16 @@ def edited_protocol_text(text: str, changes: Mapping[str, Any]) -> str:
         elif isinstance(value, str):
             _set(document, key, value)
         else:
-            raise InvalidInput(f"{key[:80]}: give a text, such as 20 s", key=key)
+            raise InvalidInput(f"{key[:80]!r}: give a text, such as 20 s", key=key)
     return tomlkit.dumps(document)
 
 
 @cache
 def _schema(model: type[BaseModel]) -> dict[str, Any]:
-    """JSON schema of a table."""
-    return model.model_json_schema()
+    """JSON schema of a table; that of a repeat, which may hold others, refers to itself."""
+    schema = model.model_json_schema()
+    found: dict[str, Any] = schema.get("$defs", {}).get(model.__name__, schema) if "$ref" in schema else schema
+    return found
 
 
 def _fields(model: type[BaseModel], entries: Mapping[str, Any], place: str) -> Iterator[ProtocolField]:
@@ -239,9 +241,11 @@ def _set(document: Any, key: str, text: str) -> None:
     if not text.strip():
         place.pop(name, None)
         return
-    fields = {each.name: each.kind for each in _fields(model, place, "")}
+    fields = (
+        dict.fromkeys(place, "list") if model is None else {each.name: each.kind for each in _fields(model, place, "")}
+    )
     if name not in fields:
-        raise InvalidInput(f"{key[:80]}: no such entry; known: {', '.join(fields)}", key=key)
+        raise InvalidInput(f"{key[:80]!r}: no such entry; known: {', '.join(fields)}", key=key)
     place[name] = _value(fields[name], text.strip(), key)
 
 
@@ -252,17 +256,17 @@ def _value(kind: str, text: str, key: str) -> Any:
             return [each for each in (part.strip() for part in text.split(",")) if each]
         case "number":
             if not re.fullmatch(r"\d{1,9}", text):
-                raise InvalidInput(f"{key}: {text[:40]!r} is no whole number", key=key)
+                raise InvalidInput(f"{key[:80]!r}: {text[:40]!r} is no whole number", key=key)
             return int(text)
         case "flag":
             if text not in ("true", "false"):
-                raise InvalidInput(f"{key}: {text[:40]!r} must be true or false", key=key)
+                raise InvalidInput(f"{key[:80]!r}: {text[:40]!r} must be true or false", key=key)
             return text == "true"
     return text
 
 
-def _place(document: Any, key: str) -> tuple[Any, type[BaseModel], str]:
-    """Table of an entry, its model and the name of the entry."""
+def _place(document: Any, key: str) -> tuple[Any, type[BaseModel] | None, str]:
+    """Table of an entry, its model, None for the variables of a repeat, and the name of the entry."""
     first, *middle, name = key.split(".") if "." in key else ("", key)
     if not first and name in ("title", "source"):
         return document, _Head, name
@@ -277,10 +281,11 @@ def _place(document: Any, key: str) -> tuple[Any, type[BaseModel], str]:
         number = ".".join(middle[:-1] if is_of_over else middle)
         steps, at = _step(document, number)
         step = steps[at]
-        model = entry_named(_MODELS, str(step.get("kind")), kind="kind of step")
-        return (step.get("over", {}), _Lists, name) if is_of_over else (step, model, name)
+        if is_of_over and isinstance(step.get("over"), Mapping):
+            return step["over"], None, name
+        return step, entry_named(_MODELS, str(step.get("kind")), kind="kind of step"), name
     raise InvalidInput(
-        f"{key[:80]}: no entry of a protocol, such as steps.2.duration or limits.voltage_maximum", key=key
+        f"{key[:80]!r}: no entry of a protocol, such as steps.2.duration or limits.voltage_maximum", key=key
     )
 
 
@@ -291,10 +296,6 @@ class _Head(BaseModel):
     source: str
 
 
-class _Lists(BaseModel):
-    """Values of variables, whatever their names."""
-
-
 def _step(document: Any, number: Any, *, may_follow: bool = False) -> tuple[MutableSequence[Any], int]:
     """List of steps that has a step, and its place there; that behind the last one where a step may follow it."""
     if not isinstance(number, str) or not _NUMBER.fullmatch(number):
@@ -302,14 +303,16 @@ def _step(document: Any, number: Any, *, may_follow: bool = False) -> tuple[Muta
     *outer, last = (int(each) - 1 for each in number.split("."))
     place = document
     for each in outer:
-        steps = place.get("steps", ())
-        if not 0 <= each < len(steps):
-            raise InvalidInput(f"there is no step {number}")
-        place = steps[each]
-    steps = place.get("steps", ())
-    if not 0 <= last < len(steps) + may_follow:
+        place = _of_list(place, each, number)[each]
+    return _of_list(place, last - may_follow if last else last, number), last
+
+
+def _of_list(place: Any, at: int, number: str) -> MutableSequence[Any]:
+    """List of steps of a table, which has one at a place."""
+    steps = place.get("steps") if isinstance(place, Mapping) else None
+    if not isinstance(steps, list) or not 0 <= at < len(steps) or not isinstance(steps[at], Mapping):
         raise InvalidInput(f"there is no step {number}")
-    return steps, last
+    return steps
 
 
 def _insert(document: Any, wanted: Any) -> None:
