@@ -1,12 +1,13 @@
 """Pages of the workbench in a real browser: by mouse and touch, in every state."""
 
+import random
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
-from tests.browser.pages import LOAD, RIGS, SPEED, VOLTS, at_rest, enter, numbers, opened, show
+from tests.browser.pages import EXAMPLES, LOAD, RIGS, SPEED, VOLTS, at_rest, enter, numbers, opened, show
 from tests.browser.workbench import Served, served
 from tests.chromium import CHROMIUM
 
@@ -196,10 +197,84 @@ def test_a_study_that_takes_long_is_cancelled(page: Page, workbench: Served) -> 
     expect(page.get_by_test_id("study")).to_be_visible()
 
 
-def test_jobs_are_listed_and_deleted(page: Page) -> None:
+RUN = {"id": "20200101-120000", "title": "Sweep", "created": "2020-01-01T12:00:00", "state": "completed"}
+RUN |= {"device": "virtual", "protocol": "resonance", "seed": 3, "recordings": 2, "version": "1.2.3"}
+RECORD = {"answer": {}, "charts": [], "blocks": [{"kind": "rows", "rows": [["outcome", "completed"]]}]}
+
+
+def test_jobs_and_runs_stand_in_one_list(page: Page) -> None:
+    page.route("**/api/lab/runs", lambda route: route.fulfill(json={"runs": [RUN], "folder": "runs"}))
+    page.route("**/api/lab/runs/*", lambda route: route.fulfill(json=RECORD))
     page.evaluate(
-        """async () => fetch('api/jobs', {method: 'POST', body: JSON.stringify(
-        {task: 'contact', arguments: {rig: {name: 'tribometer'}}, label: 'contact of the tribometer'})})"""
+        """async (rig) => fetch('api/jobs', {method: 'POST', body: JSON.stringify(
+        {task: 'contact', arguments: {rig}, label: 'contact of the tribometer'})})""",
+        {"name": "tribometer", "changes": {LOAD: "4 N"}},
     )
     page.get_by_test_id("page:jobs").click()
-    expect(page.get_by_text("contact of the tribometer").first).to_be_visible(timeout=30_000)
+    expect(page.locator("#main h2")).to_have_text(["contact of the tribometer", "Sweep"])  # the latest first
+    expect(page.get_by_test_id("of")).to_have_count(2)  # once the job runs
+    of_job, of_run = page.get_by_test_id("of").all()
+    expect(of_job).to_contain_text(f"sonolube {sl.__version__}: sonolube contact tribometer.toml --set '{LOAD}=4 N'")
+    expect(of_run).to_have_text("sonolube 1.2.3, virtual, resonance, seed 3, 2 recordings")
+    page.get_by_test_id("job-search").fill("seed 3")
+    expect(page.locator("#main h2")).to_have_text(["Sweep"])
+    page.get_by_test_id("open-run").click()
+    expect(page.get_by_test_id("run-result")).to_contain_text("outcome")
+    page.get_by_test_id("job-search").fill("")
+    page.get_by_test_id("job-kind").select_option("job")
+    page.get_by_test_id("open-job").click()
+    expect(page.get_by_test_id("job-result")).to_contain_text("asperities")
+    page.get_by_test_id("delete-job").click()
+    page.get_by_test_id("delete-job").click()
+    expect(page.get_by_test_id("job-count")).to_have_text("0 of 1")
+
+
+def test_a_page_is_found_as_it_was_left_with_the_runs_of_its_rig(page: Page) -> None:
+    page.get_by_test_id("runs-file").set_input_files(str(EXAMPLES / "tribometer-runs.csv"))
+    page.get_by_test_id("remove-runs").wait_for()
+    at_rest(page)
+    page.get_by_test_id("keep").click()
+    page.get_by_test_id("page:explore").click()
+    page.get_by_test_id("study:map").check()
+    at_rest(page)
+    expect(page.get_by_test_id("remove-runs")).to_be_visible()
+    page.get_by_test_id("page:jobs").click()
+    page.reload()
+    page.get_by_test_id("page:explore").click()
+    expect(page.get_by_test_id("study:map")).to_be_checked()
+    page.get_by_test_id("page:predict").click()
+    expect(page.get_by_test_id("differences")).to_be_visible()
+    expect(page.get_by_test_id("remove-runs")).to_be_visible()
+
+
+def test_a_rig_too_long_for_a_link_stays_through_reloads_and_a_rig_is_dropped(page: Page) -> None:
+    draw = random.Random(1)
+    text = (RIGS / "collar.toml").read_text(encoding="utf-8") + "".join(f"# {draw.random()}\n" for _ in range(2000))
+    for _ in range(2):
+        page.evaluate(_DROP, ["long.toml", text])
+        expect(page.get_by_test_id("of-tab")).to_be_visible()
+        page.reload()
+    at_rest(page)
+    expect(page.get_by_test_id("rig")).to_contain_text("long (own file)")
+    expect(page.get_by_test_id("of-tab")).to_be_visible()
+
+
+_DROP = """([name, text]) => {
+  const dataTransfer = new DataTransfer();
+  dataTransfer.items.add(new File([text], name));
+  for (const kind of ['dragover', 'drop']) dispatchEvent(new DragEvent(kind, {dataTransfer, bubbles: true, cancelable: true}));
+}"""  # noqa: E501
+
+
+def test_every_page_is_led_to_in_a_low_head(page: Page) -> None:
+    for width in (320, 390, 768, 1000, 1200, 1600):
+        page.set_viewport_size({"width": width, "height": 800})
+        page.get_by_test_id("page:predict").click()
+        page.get_by_test_id("page:new").click()
+        page.locator('[data-test="page:new"][aria-current=page]').wait_for()
+        links, last, head = (page.locator(place).bounding_box() for place in (".pages", ".pages a:last-child", ".head"))
+        assert links is not None
+        assert last is not None
+        assert head is not None
+        assert links["x"] <= last["x"] <= last["x"] + last["width"] <= links["x"] + links["width"] + 1, width
+        assert head["height"] <= (96 if width < 700 else 84 if width < 1151 else 57), width

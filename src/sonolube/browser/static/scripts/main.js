@@ -2,11 +2,11 @@
 import {html, render, useEffect, useErrorBoundary, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {ask, enter, useConnection} from './api.js';
 import {Button, capital, Loading, Refusal, Select, Sheet, useEvents, Warning} from './parts.js';
-import {addressOf, followAddress, PAGES, redo, stored, undo, useApp} from './state.js';
+import {addressAsLeft, addressOf, followAddress, PAGES, redo, stored, undo, useApp} from './state.js';
 import {TakeAway} from './take-away.js';
 
 /** Pages with styles of their own, in `pages/` beside the scripts. */
-const STYLED = new Set(['data', 'modes', 'design', 'lab']);
+const STYLED = new Set(['data', 'modes', 'design', 'lab', 'jobs', 'dissertation']);
 
 /** Module of a page, or another one that has its styles, read with them. */
 function read(page, path = `./pages/${page === 'new' ? 'new-rig' : page}.js`) {
@@ -37,12 +37,18 @@ const ThemeSwitch = () => html`<label class="theme"><span class="hidden">Theme</
 
 function Head() {
   const {state, canUndo, canRedo} = useApp();
+  const links = useRef(null);
   useEvents(['keydown'], onKey);
+  useEvents(['dragover', 'drop'], stay);
+  useEffect(() => {
+    const here = links.current.querySelector('[aria-current]'); // in view where there is no room for all
+    links.current.scrollLeft = here.offsetLeft - (links.current.clientWidth - here.offsetWidth) / 2;
+  }, [state.page]);
   return html`<header class="head">
     <a class="skip" href="#answer" onClick=${skip}>Skip to the answer</a>
-    <a class="name" href=${addressOf('predict')}>sonolube</a>
-    <nav class="pages" aria-label="Pages">
-      ${Object.entries(PAGES).map(([page, title]) => html`<a key=${page} href=${addressOf(page)} data-test=${`page:${page}`}
+    <a class="name" href=${addressOf('predict')} data-test="home">sonolube</a>
+    <nav class="pages" aria-label="Pages" ref=${links}>
+      ${Object.entries(PAGES).map(([page, title]) => html`<a key=${page} href=${addressAsLeft(page)} data-test=${`page:${page}`}
         aria-current=${state.page === page ? 'page' : undefined}>${title}</a>`)}
     </nav>
     <div class="tools">
@@ -62,6 +68,11 @@ const Step = ({name, keys, step, can, kind = ''}) => html`<${Button} kind="icon"
 function skip(event) {
   event.preventDefault();
   document.getElementById('answer')?.focus();
+}
+
+/** Keep the browser from leaving the page for a file that is dropped where no page takes it. */
+function stay(event) {
+  if (event.dataTransfer?.types.includes('Files')) event.preventDefault();
 }
 
 /** What stands above the page while the workbench does not answer. */
@@ -100,13 +111,15 @@ function Page() {
   const Shown = pages[state.page];
   useEffect(() => {
     clear?.();
-    document.title = `${PAGES[state.page]} · sonolube`;
     if (!isFirst.current) scrollTo(0, 0);
     isFirst.current = false;
     if (Shown) return;
     const {page} = state;
     read(page).then((module) => module.default, () => Unread).then((shown) => setPages((old) => ({...old, [page]: shown})));
   }, [state.page]);
+  useEffect(() => {
+    document.title = `${PAGES[state.page]} · ${state.rig.name} · sonolube`;
+  }, [state.page, state.rig.name]);
   if (fault) return html`<${Broken} again=${clear} />`;
   return Shown ? html`<${Shown} />` : html`<${Sheet} title=${PAGES[state.page]}><${Loading}>Reading the page…<//><//>`;
 }

@@ -19,7 +19,7 @@ function Compared({compared, rig}) {
   const args = {runs: {name: compared.name, upload: compared.upload}, rig};
   const job = useJob('fit', args);
   useEffect(() => offer('fit', args), [JSON.stringify(args)]);
-  return html`<div class="job-opened" data-test="compared"><${Shown} answer=${compared} of=${compared.upload} />
+  return html`<div class="lab-opened" data-test="compared"><${Shown} answer=${compared} of=${compared.upload} />
     <p class="row"><${Button} kind="button is-main" onClick=${() => job.start(`fit to ${compared.name}`)} disabled=${isActive(job.job)} data-test="fit">Fit models to these runs<//>
       <${Button} onClick=${() => change({page: 'predict', view: {runs: `${compared.upload} ${compared.name}`}})} data-test="predict-runs">Predict with these runs<//></p>
     ${job.job && html`<${JobState} job=${job.job} cancel=${job.cancel} />`}<${Failure} failure=${job.failure} />
@@ -55,7 +55,7 @@ export function Runs({turn}) {
           <${Button} kind="small" onClick=${() => toData(id)} data-test="to-data">to Data<//></td></tr>`)}</tbody></table></div>
       <p class="row"><${Button} onClick=${() => change({view: {compare: 'yes'}})} disabled=${!ticked.length} data-test="compare">Compare ${ticked.length || ''} ticked<//></p>`}
     <${Refusal} text=${note} role="alert" />${(content?.caveats ?? []).map((line) => html`<p key=${line} class="hint">${line}</p>`)}
-    ${view.open && html`<div class="job-opened" data-test="opened-run"><${Failure} failure=${opened.failure} />${opened.content && html`<${Shown} answer=${opened.content} of=${view.open} />`}</div>`}
+    ${view.open && html`<div class="lab-opened" data-test="opened-run"><${Failure} failure=${opened.failure} />${opened.content && html`<${Shown} answer=${opened.content} of=${view.open} />`}</div>`}
     ${view.compare && html`<${Failure} failure=${compared.failure} />${compared.content && html`<${Compared} compared=${compared.content} rig=${rig} />`}`}
   <//>`;
 }

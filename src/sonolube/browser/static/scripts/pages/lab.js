@@ -25,7 +25,7 @@ function useNamed({protocol: name = USUAL, steps}) {
 }
 
 /** Make a text the protocol of the view. */
-const keep = async (name, text) => change({view: {protocol: name, steps: (await pack(text)).code}});
+const keep = async (name, text) => change({view: {protocol: name, steps: await pack(text)}});
 
 /** Choice of a protocol, its time line, and the dry run beside it. */
 function Plan({lab, named, reply, rig, setEdited, start}) {

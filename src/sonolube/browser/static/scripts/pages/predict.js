@@ -4,7 +4,7 @@ import {Caveats, Failure, RefusedNote, TextTable} from '../answer.js';
 import {ask, callTask, inTurn, useLate, useReply} from '../api.js';
 import {Chart} from '../chart.js';
 import {focusField, MaterialChoices, RunsChoice, typed, uploadOf, useFile} from '../fields.js';
-import {Button, capital, Card, classes, Refusal, useEvents} from '../parts.js';
+import {Button, capital, Card, classes, Refusal} from '../parts.js';
 import {useRig, Workspace} from '../rig-panel.js';
 import {change, decode, encode, present, setEntry, useApp} from '../state.js';
 import {offer} from '../take-away.js';
@@ -165,7 +165,6 @@ export default function Predict() {
   const {content, failure, refused, isWaiting} = reply;
   const {kept, keep, remove} = useKept(state, content);
   useEffect(() => offer('predict', argumentsOf(state, false)), [JSON.stringify(body)]);
-  const isDropping = useDrop(onFile);
   const faultOf = (key) => failure?.faults.find((fault) => fault.key === key)?.text;
   const shown = [...Object.keys(state.rig.changes), 'pin', 'disc', 'lubricant'];
   const extra = html`<${Materials} view=${state.view} faultOf=${faultOf} isFirst=${!content && !failure} />`;
@@ -185,7 +184,7 @@ export default function Predict() {
       <${Button} onClick=${keep} disabled=${isWaiting || Boolean(failure) || refused.length > 0} data-test="keep">Keep this<//>
       <span class="status" role="status" data-test="status">${isDim && !failure ? 'Computing…' : ''}</span></div>
     <${Failure} failure=${failure} shown=${shown} /><${RefusedNote} refused=${refused} />`;
-  return html`<${Workspace} lead=${lead} extra=${extra}>
+  return html`<${Workspace} lead=${lead} extra=${extra} onFile=${onFile}>
     <div class=${isDim ? 'is-dim' : ''} aria-busy=${isWaiting}>
       <${Numbers} answer=${content} />
       <section class="card" aria-label="Friction over amplitude and over speed">
@@ -204,18 +203,5 @@ export default function Predict() {
         </div>
       </div>
     </div>
-    ${isDropping && html`<div class="drop" aria-hidden="true">Drop the runs here</div>`}
   <//>`;
-}
-
-/** Take a file that is dropped anywhere on the page. */
-function useDrop(onFile) {
-  const [isOver, setOver] = useState(false);
-  useEvents(['dragover', 'dragleave', 'drop'], (event) => {
-    if (!event.dataTransfer?.types.includes('Files')) return;
-    event.preventDefault();
-    setOver(event.type === 'dragover');
-    if (event.type === 'drop') onFile(event.dataTransfer.files[0]);
-  });
-  return isOver;
 }
