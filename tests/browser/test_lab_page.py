@@ -97,7 +97,7 @@ def test_a_protocol_is_edited_run_compared_and_fitted(hand: type[Mouse], page: P
     walk.press("step:1")
     page.keyboard.press("End")
     walk.write("entry:steps.6.voltages", "10 V, 20 V, 28 V")
-    expect(page.get_by_test_id("dry-run")).to_contain_text("28 V")
+    expect(page.get_by_test_id("dry-run")).to_contain_text("28 V pp")
     walk.write("start:tags", hand.name)
     walk.picture("planned")
     walk.press("start")

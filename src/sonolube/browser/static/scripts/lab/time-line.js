@@ -40,11 +40,10 @@ function Entry({field, wrong, set}) {
     <${Refusal} text=${refusal} id=${`${id}-refusal`} data-test="entry-refusal" /></div>`;
 }
 
-/** The time line above what stands in two columns: entries of the chosen step with `start` below them, and `children`. @param {{protocol: Object, edit: (changes: Object) => Promise<import('../api.js').Failure|undefined>, start: any, children: any}} properties */
-export function TimeLine({protocol: {steps, kinds, limits, metadata}, edit, start, children}) {
+/** The time line above what stands in two columns: entries of the chosen step with `start` below them, and `children`. @param {{protocol: Object, edit: (changes: Object) => Promise<boolean>, wrong: {key: string, typed: string, text: string}|null, start: any, children: any}} properties */
+export function TimeLine({protocol: {steps, kinds, limits, metadata}, edit, wrong, start, children}) {
   const [chosen, choose] = useState('1');
   const [kind, setKind] = useState(kinds[0]);
-  const [wrong, setWrong] = useState(null);
   const line = useRef(null);
   const at = Math.max(0, steps.findIndex(({number}) => number === chosen));
   const step = steps[at];
@@ -53,12 +52,7 @@ export function TimeLine({protocol: {steps, kinds, limits, metadata}, edit, star
   const widths = steps.map((each) => Math.round(Math.max(NARROW, (WIDE * lasting(each)) / whole)));
   const lanes = Object.keys(LANES).filter((lane) => lane !== 'repeat' || steps.some((each) => laneOf(each) === lane));
 
-  const change = async (changes, next = step.number) => {
-    const failure = await edit(changes);
-    const [[key, typed]] = Object.entries(changes);
-    setWrong(failure ? {key, typed, text: failure.faults.map((fault) => fault.text).join(' ')} : null);
-    if (!failure) choose(next);
-  };
+  const change = async (changes, next = step.number) => await edit(changes) && choose(next);
   const set = (key, typed) => change({[key]: typed});
   const move = (by) => has(beside(step.number, by)) && change({move: {step: step.number, before: beside(step.number, by > 0 ? 2 : -1)}}, beside(step.number, by));
   const press = (event) => {

@@ -27,16 +27,34 @@ function useNamed({protocol: name = USUAL, steps}) {
 /** Make a text the protocol of the view. */
 const keep = async (name, text) => change({view: {protocol: name, steps: await pack(text)}});
 
-/** Choice of a protocol, its time line, and the dry run beside it. */
-function Plan({lab, named, reply, rig, setEdited, start}) {
-  const {content, failure, refused, isWaiting} = reply;
+/** The protocol of the view with its time line and dry run, and what edits it; `wrong` is the entry that was refused last. */
+function usePlan(view, rig) {
+  const named = useNamed(view);
+  const of = JSON.stringify([named, rig]);
+  const [edited, setEdited] = useState(null);
+  const [wrong, setWrong] = useState(null);
+  const [isEditing, setEditing] = useState(false);
+  useEffect(() => setWrong(null), [of]);
+  const own = edited?.of === of ? edited.content : null;
+  const reply = useReply('protocol', named && rig.name && !own ? 'api/protocol' : null, {protocol: named, rig});
   const edit = async (changes) => {
-    const {content: edited, failure: fault} = await ask('api/edit_protocol', {body: {protocol: named, changes, rig}});
-    if (!edited) return fault;
-    setEdited({of: JSON.stringify([{name: named.name, text: edited.text}, rig]), content: edited});
-    await keep(named.name, edited.text);
-    return undefined;
+    setEditing(true);
+    const {content, failure} = await ask('api/edit_protocol', {body: {protocol: named, changes, rig}});
+    const [[key, typed]] = Object.entries(changes);
+    if (failure) setWrong({key, typed, text: failure.faults.map((fault) => fault.text).join(' ')});
+    else {
+      setWrong(null);
+      setEdited({of: JSON.stringify([{name: named.name, text: content.text}, rig]), content});
+      await keep(named.name, content.text);
+    }
+    setEditing(false);
+    return !failure;
   };
+  return {...(own ? {content: own, refused: []} : reply), named, edit, wrong, isBusy: isEditing || !named || reply.isWaiting};
+}
+
+/** Choice of a protocol, its time line, and the dry run beside it. */
+function Plan({lab, plan: {named, content, failure, refused, edit, wrong, isBusy}, start}) {
   const isOwn = named?.text !== undefined;
   const choices = lab.protocols.map(({name, title}) => [name, title]);
   return html`<${Card} id="plan-title" title="Protocol" data-test="plan">
@@ -45,17 +63,18 @@ function Plan({lab, named, reply, rig, setEdited, start}) {
         onChange=${(event) => change({view: {protocol: event.target.value, steps: null}})} data-test="protocol" />
       <${FileButton} accept=".toml" label="Protocol file" onFile=${async (file) => keep(file.name.replace(/\.toml$/i, ''), await file.text())} test="protocol-file" data-test="open-protocol">Open…<//>
       <${Button} onClick=${() => save({name: `${named.name}.toml`, kind: 'application/toml', text: content.text})} disabled=${!content} data-test="save-protocol">Save as TOML<//></div>
-    <${Failure} failure=${failure} /><${RefusedNote} refused=${refused ?? []} />
+    <${Failure} failure=${failure} /><${RefusedNote} refused=${refused} />
     ${!content && !failure && html`<${Loading}>Reading the protocol…<//>`}
-    ${content && html`<p class="hint">${content.source}</p><${TimeLine} protocol=${content} edit=${edit} start=${start}>
-      <section aria-labelledby="dry-run-title" aria-busy=${isWaiting} data-test="dry-run"><h2 id="dry-run-title">Dry run</h2>
+    ${content && html`<p class="hint">${content.source}</p><${TimeLine} protocol=${content} edit=${edit} wrong=${wrong} start=${start}>
+      <section aria-labelledby="dry-run-title" aria-busy=${isBusy} data-test="dry-run"><h2 id="dry-run-title">Dry run</h2>
         ${content.refusals.length > 0 && html`<${Warning} data-test="impossible"><strong>Impossible on this rig:</strong>${content.refusals.map((line) => html`<p key=${line}>${line}</p>`)}<//>`}
         <${Shown} answer=${content.dry_run} of=${content.text} /></section><//>`}
   <//>`;
 }
 
 /** What a run is begun with, and its start. */
-function Start({lab, view, named, rig, isPossible, isBusy}) {
+function Start({lab, view, rig, plan: {named, content, failure: fault, wrong, isBusy}, isFree}) {
+  const isPossible = content?.refusals.length === 0;
   const [failure, setFailure] = useState(null);
   const [isAnyway, setAnyway] = useState(false);
   const isVirtual = lab.devices.kind === 'virtual';
@@ -70,7 +89,8 @@ function Start({lab, view, named, rig, isPossible, isBusy}) {
         onText=${(text, isMoving) => !isMoving && change({view: {[name]: text.trim() || null}})} /><//>`)}</div>
     ${!isPossible && html`<label class="check"><input type="checkbox" checked=${isAnyway} onChange=${() => setAnyway(!isAnyway)} data-test="anyway" /> Run it although the dry run says that it is impossible</label>`}
     <${Failure} failure=${failure} />
-    <p class="row"><${Button} kind="button is-main" onClick=${start} disabled=${isBusy || !(isPossible || isAnyway)} data-test="start">Start the run<//></p></section>`;
+    <p class="row"><${Button} kind="button is-main" onClick=${start} disabled=${isBusy || fault || wrong || !isFree || !(isPossible || isAnyway)} data-test="start">Start the run<//>
+      ${wrong && html`<span class="refusal">An entry of the protocol is refused: mend it first.</span>`}</p></section>`;
 }
 
 /** Who holds the laboratory, and its last run where that was lost. */
@@ -94,11 +114,7 @@ function Holder({lab}) {
 export default function Lab() {
   const {state: {view, rig}} = useApp();
   const lab = useLab();
-  const named = useNamed(view);
-  const [edited, setEdited] = useState(null);
-  const own = edited?.of === JSON.stringify([named, rig]) ? edited.content : null;
-  const asked = useReply('protocol', named && rig.name && !own ? 'api/protocol' : null, {protocol: named, rig});
-  const reply = own ? {content: own} : asked;
+  const plan = usePlan(view, rig);
   if (!lab) return html`<${Sheet} title="Lab"><${Loading}>Reading the state of the laboratory…<//><//>`;
   const {run} = lab;
   const isHolder = lab.holder.is_me;
@@ -106,7 +122,7 @@ export default function Lab() {
     <p class="notice is-warning" data-test="safety">${lab.safety}</p>
     <${Holder} lab=${lab} />
     ${run && html`<${RunCard} run=${run} devices=${lab.devices} isHolder=${isHolder} ask=${send} />`}
-    <${Plan} lab=${lab} named=${named} reply=${reply} rig=${rig} setEdited=${setEdited} start=${html`<${Start} lab=${lab} view=${view} named=${named} rig=${rig} isPossible=${reply.content?.refusals.length === 0} isBusy=${!named || !reply.content || Boolean(lab.lost) || isAtWork(run) || !(isHolder || lab.holder.is_free)} />`} />
+    <${Plan} lab=${lab} plan=${plan} start=${html`<${Start} lab=${lab} view=${view} rig=${rig} plan=${plan} isFree=${!lab.lost && !isAtWork(run) && (isHolder || lab.holder.is_free)} />`} />
     <${Runs} turn=${`${run?.id} ${isAtWork(run)}`} />
   <//>`;
 }
