@@ -107,6 +107,8 @@ class StopServer:
             waited += _POLL
         if "json" in request.headers.get("accept", ""):
             return _json(self._live.status())
+        if self._live.has_ended.is_set():  # its process ends, so that there is nothing to go to
+            return await self._page(request)
         return RedirectResponse("./", status_code=303)
 
     async def _status(self, request: Request) -> Response:
