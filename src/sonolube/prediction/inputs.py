@@ -187,8 +187,9 @@ def within_plane_refusal(rig: Rig) -> str:
             " predict or friction, which say how far it was tested, or fit own runs"
         )
     return (
-        f"{rig.title}: a prediction takes one component of vibration, but this one is {rig.direction.text}; use"
-        " friction, which gives the theory, or fit own runs"
+        f"{rig.title}: no prediction of a vibration along the normal and within the plane at once, whose phase decides"
+        f" and of which no one law has the tested limits, but this one is {rig.direction.text}; use friction, which"
+        " gives the theory, or fit own runs"
     )
 
 
