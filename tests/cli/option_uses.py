@@ -175,6 +175,11 @@ MODES = {
         ("OUT/rig.toml", *KNOWN, "--amplitude", "3um", "--direction", "torsional", "--torsion-radius", "20mm"),
         {"--torsion-radius": "15mm"},
     ),
+    "new of a soft layer": Mode(
+        "new",
+        ("OUT/rig.toml", *KNOWN, "--pin", "felt", "--amplitude", "3um", "--layer-thickness", "3mm"),
+        {"--layer-thickness": "5mm"},
+    ),
     "new with an actuator": Mode(
         "new",
         ("OUT/rig.toml", *KNOWN, "--actuator", "sa050510", "--voltage", "40V"),
