@@ -318,6 +318,14 @@ MODES = {
             "--body-mass": "2kg",
         },
     ),
+    "modes of another program with a static analysis": Mode(
+        "modes",
+        (
+            *("--from", "FOLDER/bar.unv", *FOREIGN, "--length-unit", "mm", "--force-unit", "N"),
+            *("--static-compliance", "1e-6m/N", "--displacement-per-volt", "-10nm/V"),
+        ),
+        {"--static-compliance": "2e-6m/N", "--displacement-per-volt": "-20nm/V"},
+    ),
     "impedance of a part": Mode(
         "impedance compute",
         ("block", *BAR, "--points", "5", "--tolerance", "0.9", "--to", "120kHz"),
