@@ -194,6 +194,15 @@ class VibrationDirection:
         return found["normal"], found["along"], found["across"]
 
 
+def require_same_direction(words: frozenset[str], direction: VibrationDirection, *, title: str) -> None:
+    """Refuse runs whose words, "normal" or "torsional", are of another direction than that of their rig."""
+    other = sorted(words - {direction.direction})
+    if other:
+        raise InvalidInput(
+            f"{title}: vibrates {direction.text}; leave out runs with the direction {' or '.join(other)}"
+        )
+
+
 NORMAL: Final = VibrationDirection()
 """Vibration along the normal of the contact."""
 
