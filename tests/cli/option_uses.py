@@ -178,6 +178,11 @@ MODES = {
         ("OUT/rig.toml", *KNOWN, "--amplitude", "3um", "--direction", "torsional", "--torsion-radius", "20mm"),
         {"--torsion-radius": "15mm"},
     ),
+    "new of a soft layer": Mode(
+        "new",
+        ("OUT/rig.toml", *KNOWN, "--pin", "felt", "--amplitude", "3um", "--layer-thickness", "3mm"),
+        {"--layer-thickness": "5mm"},
+    ),
     "new with an actuator": Mode(
         "new",
         ("OUT/rig.toml", *KNOWN, "--actuator", "sa050510", "--voltage", "40V"),
@@ -315,6 +320,14 @@ MODES = {
             "--force-unit": ("N", "kN"),
             "--body-mass": "2kg",
         },
+    ),
+    "modes of another program with a static analysis": Mode(
+        "modes",
+        (
+            *("--from", "FOLDER/bar.unv", *FOREIGN, "--length-unit", "mm", "--force-unit", "N"),
+            *("--static-compliance", "1e-6m/N", "--displacement-per-volt", "-10nm/V"),
+        ),
+        {"--static-compliance": "2e-6m/N", "--displacement-per-volt": "-20nm/V"},
     ),
     "impedance of a part": Mode(
         "impedance compute",
