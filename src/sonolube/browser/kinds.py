@@ -19,6 +19,7 @@ VIEWS: Final = {
     "parts": "sonolube.browser.mode_view:mode_parts",
     "files": "sonolube.browser.answer_files:answer_files",
     "rig": "sonolube.browser.rig_view:rig_view",
+    "materials": "sonolube.browser.rig_view:material_titles",
     "take": "sonolube.browser.take_away:taken",
     "protocol": "sonolube.browser.lab.protocol_view:protocol_view",
     "edit_protocol": "sonolube.browser.lab.protocol_view:edited_protocol",
