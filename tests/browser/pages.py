@@ -56,7 +56,7 @@ def opened(browser: Browser, workbench: Served, **options: Any) -> Iterator[Page
     page.goto(workbench.link)
     at_rest(page)
     yield page
-    assert (foreign, said) == ([], [])
+    assert (foreign, said) == ([], []), (foreign, said)
     context.close()
 
 

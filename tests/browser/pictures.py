@@ -9,6 +9,7 @@ from pathlib import Path
 from PIL import Image
 from playwright.sync_api import Browser, Page
 from tests.browser.pages import LOAD, VOLTS, at_rest, opened, show, started_browser
+from tests.browser.recordings import write_recordings
 from tests.browser.scans import write_groove
 from tests.browser.workbench import Served, served
 
@@ -34,6 +35,7 @@ def every_picture() -> Shots:
         with opened(browser, workbench) as page:
             yield from _pages(page, workbench)
             yield from _scan(page, workbench, Path(folder))
+            yield from _data(page, workbench, Path(folder))
         yield from _without_an_answer(browser, workbench)
 
 
@@ -63,6 +65,22 @@ def _pages(page: Page, workbench: Served) -> Shots:
     page.get_by_test_id("use-rig").wait_for()
     at_rest(page)
     yield "new", page.screenshot()
+
+
+def _data(page: Page, workbench: Served, folder: Path) -> Shots:
+    """A recording with its steps, and one whose columns are asked for."""
+    show(page, workbench, "tribometer", {}, where="data")
+    page.get_by_test_id("data-files").set_input_files(write_recordings(folder))
+    page.get_by_test_id("set:normal_load").fill("3 N")
+    page.keyboard.press("Enter")
+    page.get_by_test_id("measured").wait_for()
+    at_rest(page)
+    page.evaluate("scrollTo(0, 0)")
+    yield "data", page.screenshot()
+    page.get_by_test_id("file:cell.csv").click()
+    page.get_by_test_id("column:Zeit").fill("time ms")
+    page.get_by_test_id("column:Zelle").fill("friction_force N")
+    yield "columns", page.get_by_test_id("columns").screenshot()
 
 
 def _scan(page: Page, workbench: Served, folder: Path) -> Shots:

@@ -151,6 +151,11 @@ def test_uploaded_runs_and_content_in_the_request_are_the_same(tmp_path: Path) -
     assert found[0]["answer"]["runs"] == 4
 
 
+def test_materials_are_chosen_by_the_titles_of_their_task() -> None:
+    known = sl.materials().json_object()
+    assert KINDS["materials"]({}, NOWHERE) == {name: each["title"] for name, each in known.items()}
+
+
 def test_no_task_that_opens_a_device_is_offered() -> None:
     names = {task.name for task in offered_tasks()}
     assert {"predict", "sweep", "map", "measure friction", "materials"} <= names

@@ -5,10 +5,10 @@ import re
 from pathlib import Path
 from typing import Literal
 
-import numpy as np
 import pytest
 from playwright.sync_api import Browser, Page, expect
 from tests.browser.pages import at_rest, opened, show
+from tests.browser.recordings import write_recordings
 from tests.browser.test_pages import faults_of_access
 from tests.browser.walks import HANDS, Mouse
 from tests.browser.workbench import Served
@@ -20,28 +20,11 @@ pytestmark = [
     pytest.mark.browser,
     pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine; Debian's package is called chromium"),
 ]
-ZERO, INTRINSIC, REDUCTION = 0.05, 1.0, 0.3
 
 
 @pytest.fixture(scope="module")
 def files(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
-    """A recording with its voltage, and one without, whose columns are unknown."""
-    folder, rng, t = tmp_path_factory.mktemp("recordings"), np.random.default_rng(1), np.arange(0, 60, 0.01)
-    volts = 14.0 * np.floor(t / 20)
-    force = INTRINSIC * (1 - REDUCTION * volts / 28) + 0.03 * rng.standard_normal(t.size)
-    np.savetxt(
-        folder / "stairs.csv",
-        np.stack([t, volts, force], 1),
-        delimiter=",",
-        header="time (s),voltage_peak_to_peak (V),friction_force (N)",
-        comments="",
-        fmt="%.9g",
-    )
-    cell = ZERO + force * (t > 4)
-    np.savetxt(
-        folder / "cell.csv", np.stack([1e3 * t, cell], 1), delimiter=",", header="Zeit,Zelle", comments="", fmt="%.9g"
-    )
-    return folder / "stairs.csv", folder / "cell.csv"
+    return write_recordings(tmp_path_factory.mktemp("recordings"))
 
 
 @pytest.mark.parametrize("hand", HANDS)

@@ -112,7 +112,7 @@ def test_a_slider_is_moved_by_touch_on_a_phone(browser: Browser, workbench: Serv
 
 def test_no_page_has_a_fault_of_access_or_is_cut_off(browser: Browser, workbench: Served) -> None:
     with opened(browser, workbench, bypass_csp=True, reduced_motion="reduce") as page:
-        for where in ("predict", "explore", "jobs", "new", "dissertation"):
+        for where in ("predict", "explore", "data", "modes", "design", "lab", "jobs", "new", "dissertation"):
             show(page, workbench, "tribometer", {}, where=where)
             for width, height, scheme in SHADES:
                 page.set_viewport_size({"width": width, "height": height})

@@ -10,6 +10,7 @@ from sonolube.browser.places import Places
 from sonolube.design import map_kinds
 from sonolube.errors import InvalidInput
 from sonolube.example_files import example_files
+from sonolube.facts.materials import material, material_classes, material_names
 from sonolube.rig import Rig, commanded_quantity
 from sonolube.rig.file.reader import rig_contents, rig_of_file
 from sonolube.rig.file.section import guidance
@@ -56,6 +57,12 @@ def rig_view(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
         "maps": map_kinds(commanded_quantity(rig)),
         "rigs": [*places.rigs, *(name for name, each in example_files().items() if each.is_rig)],
     }
+
+
+def material_titles(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
+    """Titles of all materials and classes of materials by name."""
+    del payload, places
+    return {name: material(name).title for name in (*material_names(), *material_classes())}
 
 
 def rig_fields(

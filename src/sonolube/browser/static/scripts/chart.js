@@ -128,11 +128,11 @@ function ChartTables({tables: latest, name}) {
 /**
  * @param {{name: string, caption?: string, chart: Object, tables?: Object[], dimmed?: boolean,
  *   kept?: {label: string, chart: Object}[], onPick?: (place: {panel: number, x: number, y: number}) => void,
- *   canPick?: (panel: number) => boolean,
+ *   canPick?: (panel: number) => boolean, picks?: string, onRead?: (point: Object|null) => void, ringed?: {x: number, y: number},
  *   drag?: {panel: number, onMove: (x: number) => void, onRelease: (x: number) => void}[],
  *   over?: (panel: object, ranges: object) => any}} props `over` gives what lies over the area between the axes of a panel
  */
-export function Chart({name, caption, chart, tables, dimmed, kept = NO_KEPT, onPick, canPick, drag, over}) {
+export function Chart({name, caption, chart, tables, dimmed, kept = NO_KEPT, onPick, canPick, picks, onRead, ringed, drag, over}) {
   const [figure, width, theme] = useRoom();
   const [said, say] = useState('');
   const keptCharts = useMemo(() => kept.map((each) => each.chart), [kept]);
@@ -164,7 +164,8 @@ export function Chart({name, caption, chart, tables, dimmed, kept = NO_KEPT, onP
             ${legend === 'panels' && html`<${Legend} theme=${theme} entries=${entriesOf([panel])} />`}
             <div class="chart-row">
               <${ChartPanel} panel=${panel} place=${place} ranges=${ranges[place]} behind=${behind[place]} width=${size.width}
-                height=${size.height + (hasXText(place) ? TEXT_HEIGHT : 0)} hasXText=${hasXText(place)} theme=${theme} drag=${drag?.find((each) => each.panel === place)} over=${over} onPick=${!canPick || canPick(place) ? onPick : undefined} say=${say} />
+                height=${size.height + (hasXText(place) ? TEXT_HEIGHT : 0)} hasXText=${hasXText(place)} theme=${theme} drag=${drag?.find((each) => each.panel === place)}
+                over=${over} onPick=${!canPick || canPick(place) ? onPick : undefined} picks=${picks} onRead=${onRead} ringed=${ringed} say=${say} />
               ${field && html`<${ColourScale} field=${field} height=${size.height - 20} />`}
             </div></div>`;
         })}

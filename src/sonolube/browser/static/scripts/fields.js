@@ -176,8 +176,7 @@ export function useFile(entry) {
 
 /** Choices of the materials of pin and disc; `faultOf` gives the refusal of one. */
 export function MaterialChoices({view, faultOf, isAsked = true}) {
-  const known = useReply('materials', isAsked ? 'api/tasks/materials' : null, NOTHING);
-  const names = Object.entries(known.content?.answer ?? {}).map(([name, {title}]) => [name, title]);
+  const names = Object.entries(useReply('materials', isAsked ? 'api/materials' : null, NOTHING).content ?? {});
   return BODIES.map(([body, label]) => {
     const [id, chosen, fault] = [`material-${body}`, view[body], faultOf(body)];
     const isUnlisted = chosen && !names.some(([name]) => name === chosen);

@@ -35,7 +35,7 @@ const textOf = (rig, field) => rig.changes[field.key] ?? field.text;
 const tableOf = (field) => field.key.slice(0, field.key.lastIndexOf('.'));
 
 /** Chooser of a rig: the examples, the one that was opened, an own file. */
-function RigChoice({view}) {
+export function RigChoice({view}) {
   const {state} = useApp();
   const own = state.rig.text !== undefined;
   const names = [...new Set([...(own ? [state.rig.name] : []), ...(view?.rigs ?? last.view?.rigs ?? []), state.rig.name])].filter(Boolean);

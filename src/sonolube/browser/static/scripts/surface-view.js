@@ -5,13 +5,13 @@ import {extent, rgb} from './chart-scale.js';
 import {Button, useEvents} from './parts.js';
 
 const VERTEX = `#version 300 es
-  uniform mat3 rows; uniform vec3 middle; uniform vec2 scale; uniform float motion, reach; uniform vec2 ends;
+  uniform mat3 rows; uniform vec3 middle; uniform vec2 scale; uniform float motion, reach; uniform vec2 ends; uniform bool isEdge;
   in vec3 position, shape; in float value;
   out vec3 seen; out float share;
   void main() {
     seen = rows * (position + motion * shape - middle);
     share = (value - ends.x) / (ends.y - ends.x);
-    gl_Position = vec4(seen.xy * scale, -seen.z / reach, 1.0);
+    gl_Position = vec4(seen.xy * scale, -seen.z / reach - (isEdge ? 0.004 : 0.0), 1.0); // edges before their faces
   }`;
 const FRAGMENT = `#version 300 es
   precision highp float;
@@ -26,13 +26,16 @@ const FRAGMENT = `#version 300 es
     colour = vec4(isEdge ? ink : mix(body, ink, rim), 1.0);
   }`;
 const SHADES = 256;
+const STYLES = 'static/pages/surface-view.css';
+const AXES = ['x', 'y', 'z'];
 const SHARP = Math.cos(Math.PI / 6); // of the angle between triangles, above which their edge is drawn
 const FIRST = {turn: (32 * Math.PI) / 180, tilt: (24 * Math.PI) / 180, size: 1};
 const SLENDER = 1.5; // height over the other sides, above which a body is laid down
 const [STEP, ZOOM, NEAREST, FARTHEST] = [Math.PI / 24, 1.2, 20, 0.3];
 const PER_PIXEL = 0.009; // radians
-const AXES = ['x', 'y', 'z'];
 const FILL = 0.94; // of the canvas by a body whichever way it is turned
+
+document.head.append(Object.assign(document.createElement('link'), {rel: 'stylesheet', href: STYLES})); // once, with this module
 
 /** Steps of the view by keys, each with its sign on a button and its name. */
 const STEPS = {
@@ -114,8 +117,6 @@ function painterOn(canvas) {
   gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
   for (const [name, value] of [[gl.TEXTURE_MIN_FILTER, gl.LINEAR], [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE]]) gl.texParameteri(gl.TEXTURE_2D, name, value);
   gl.enable(gl.DEPTH_TEST);
-  gl.enable(gl.POLYGON_OFFSET_FILL);
-  gl.polygonOffset(1, 2);
   const buffers = {};
   let [triangleCount, edgeCount] = [0, 0];
   const index = (buffer, values) => {
@@ -186,8 +187,8 @@ function usePainter(canvas) {
 /**
  * Surface coloured by a value, at `amplitude * sin(phase)` of its shape; a table of the numbers belongs beside it.
  * @param {{positions: Float32Array, triangles: Uint32Array, values: Float32Array, shape?: Float32Array, amplitude?: number, phase?: number,
- *   label: string, quantity: string, unit: string, scale?: 'viridis'|'cividis'|'grey', names?: string[], hasEdges?: boolean, test?: string}} props `positions` and `shape` have three numbers a vertex;
- *   `label` names the picture, `quantity` what its colours are, `names` the axes
+ *   label: string, quantity: string, unit: string, scale?: 'viridis'|'cividis'|'grey', names?: string[], hasEdges?: boolean, test?: string}} props `positions` and
+ *   `shape` have three numbers a vertex; `label` names the picture, `quantity` what its colours are, `names` the axes
  */
 export function SurfaceView({positions, triangles, values, shape, amplitude = 0, phase = Math.PI / 2, label, quantity, unit, scale = 'viridis', names = AXES, hasEdges = true,
   test = 'surface'}) {
@@ -233,7 +234,7 @@ export function SurfaceView({positions, triangles, values, shape, amplitude = 0,
     <div class="surface-row">
       <canvas ref=${canvas} role="img" tabindex=${isDrawn ? 0 : undefined} class="surface-canvas" hidden=${!isDrawn} aria-label=${label} onKeyDown=${press}
         onWheel=${wheel} onPointerDown=${(event) => canvas.current.setPointerCapture(event.pointerId)} onPointerMove=${move} data-test=${`${test}-canvas`} />
-      ${isDrawn && html`<${Directions} rows=${rows} names=${names} /><${ColourScale} field=${{values: [ends], scale, scale_text: `${quantity} (${unit})`}} height=${220} />`}
+      ${isDrawn && html`<${Directions} rows=${rows} names=${names} /><${ColourScale} field=${{values: [ends], scale, scale_text: unit ? `${quantity} (${unit})` : quantity}} height=${220} />`}
     </div>
     ${!isDrawn && html`<p class="notice" role="status" data-test="no-webgl">This browser has no WebGL2 at present, so the body is not drawn; its numbers stand in the table.</p>`}
     ${isDrawn && html`<div class="row surface-tools" role="group" aria-label="View">

@@ -111,7 +111,7 @@ function withPoint(chart, fields) {
 }
 
 /** Choice among names, each with its title, as a row of buttons. */
-const Choices = ({group, legend, titles, chosen, choose}) => html`<fieldset class="choices" ref=${useInView(chosen)}><legend>${legend}</legend>
+export const Choices = ({group, legend, titles, chosen, choose}) => html`<fieldset class="choices" ref=${useInView(chosen)}><legend>${legend}</legend>
   ${titles.map(([name, title]) => html`<label key=${name} class="choice"><input type="radio" name=${group} checked=${name === chosen}
     onChange=${() => choose({[group]: name})} data-test=${`${group}:${name}`} /><span>${title}</span></label>`)}</fieldset>`;
 

@@ -57,7 +57,7 @@ function Made({answer, name, isDim}) {
 export default function NewRig() {
   const {state: {view}} = useApp();
   const description = useReply('description', 'api/description', undefined);
-  const materials = useReply('materials', 'api/tasks/materials', NOTHING);
+  const materials = useReply('materials', 'api/materials', NOTHING);
   const actuators = useReply('actuators', 'api/tasks/actuators', NOTHING);
   const schema = description.content?.paths[PATH].post.requestBody.content['application/json'].schema;
   const names = Object.keys(schema?.properties ?? {});
@@ -81,7 +81,7 @@ export default function NewRig() {
   return html`<div class="page">
     <div id="answer" tabindex="-1"><h1 class="statement">A first rig from what is known before a test</h1>
     <p class="hint">Numbers with their unit. What is not known is taken from published tests, and stated as least known.</p></div>
-    <datalist id="known-materials">${Object.entries(materials.content?.answer ?? {}).map(([name, {title}]) => html`
+    <datalist id="known-materials">${Object.entries(materials.content ?? {}).map(([name, title]) => html`
       <option key=${name} value=${name}>${title}</option>`)}</datalist>
     <datalist id="known-actuators">${Object.keys(actuators.content?.answer ?? {}).map((name) => html`
       <option key=${name} value=${name} />`)}</datalist>
