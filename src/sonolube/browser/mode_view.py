@@ -105,17 +105,22 @@ def shapes_object(found: "SurfaceModes") -> dict[str, Any]:
         "modes": [
             {
                 "name": mode.name,
-                "frequency": mode.frequency,
+                "frequency": mode.frequency_text,
                 "reference": mode.reference,
-                "shape": _packed(mode.displacement, "<f4"),
+                "shape": _packed(mode.shape, "<f4"),
                 "stress": None if mode.stress is None else _packed(_MEGAPASCAL_PER_MICROMETRE * mode.stress, "<f4"),
-                "peak_stress": None if mode.peak_stress is None else _MEGAPASCAL_PER_MICROMETRE * mode.peak_stress,
+                "peak_stress": _scaled(mode.stress_per_displacement),
                 "end_ratio": None if mode.motion is None else mode.motion.end_ratio,
                 "nodal_planes": None if mode.motion is None else [1e3 * each for each in mode.motion.nodal_planes],
             }
             for mode in found.modes
         ],
     }
+
+
+def _scaled(stress: float | None) -> float | None:
+    """Stress per displacement in MPa/um."""
+    return None if stress is None else _MEGAPASCAL_PER_MICROMETRE * stress
 
 
 def _packed(values: NDArray[Any], kind: str) -> str:
