@@ -75,7 +75,7 @@ def show(page: Page, workbench: Served, name: str, changes: Mapping[str, str], *
     entries = "".join(f"&set={_quoted(f'{key}:{value}')}" for key, value in changes.items())
     query = f"?rig={name}{entries}"
     page.goto(f"{workbench.address}#/{where}{query}")
-    page.locator(f'[data-test="page:jobs"][href="#/jobs{query}"]').wait_for()  # the state is that of the address
+    page.locator(f'[data-test="home"][href="#/predict{query}"]').wait_for()  # the state is that of the address
     page.locator(f'[data-test="page:{where}"][aria-current=page]').wait_for()
     at_rest(page)
 

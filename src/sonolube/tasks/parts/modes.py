@@ -97,6 +97,15 @@ def modes(
     modal_mass: Annotated[
         Number | None, Quantity("Of modes whose file states none; 1kg if mass-normalised.", "kg")
     ] = None,
+    static_compliance: Annotated[
+        Number | None,
+        Quantity(
+            "Of the contact by a static analysis, without rigid motions: for modes left out.", "static_compliance"
+        ),
+    ] = None,
+    displacement_per_volt: Annotated[
+        Number | None, Quantity("Of the contact by a static analysis, beside it.", "displacement_per_volt")
+    ] = None,
     length_unit: Annotated[str | None, Parameter("Of a file that states none, such as mm.", "UNIT")] = None,
     force_unit: Annotated[str | None, Parameter("Of a file that states none, such as N.", "UNIT")] = None,
     **watch: Unpack[Watched],
@@ -128,6 +137,7 @@ def modes(
             quality_factor=quality_factor,
             modal_mass=modal_mass,
             units=(length_unit, force_unit),
+            statics=(static_compliance, displacement_per_volt),
             body=body,
         )
     refuse_unused(*FILE_ONLY, because=f"for a part; it is for {shown('from_file')}")

@@ -27,6 +27,7 @@ const FRAGMENT = `#version 300 es
   }`;
 const SHADES = 256;
 const STYLES = 'static/pages/surface-view.css';
+const AXES = ['x', 'y', 'z'];
 const SHARP = Math.cos(Math.PI / 6); // of the angle between triangles, above which their edge is drawn
 const FIRST = {turn: (32 * Math.PI) / 180, tilt: (24 * Math.PI) / 180, size: 1};
 const SLENDER = 1.5; // height over the other sides, above which a body is laid down
@@ -186,16 +187,17 @@ function usePainter(canvas) {
 /**
  * Surface coloured by a value, at `amplitude * sin(phase)` of its shape; a table of the numbers belongs beside it.
  * @param {{positions: Float32Array, triangles: Uint32Array, values: Float32Array, shape?: Float32Array, amplitude?: number, phase?: number,
- *   label: string, quantity: string, unit: string, scale?: 'viridis'|'cividis'|'grey', test?: string}} props `positions` and `shape` have three numbers a vertex;
- *   `label` names the picture, `quantity` what its colours are
+ *   label: string, quantity: string, unit: string, scale?: 'viridis'|'cividis'|'grey', names?: string[], hasEdges?: boolean, test?: string}} props `positions` and
+ *   `shape` have three numbers a vertex; `label` names the picture, `quantity` what its colours are, `names` the axes
  */
-export function SurfaceView({positions, triangles, values, shape, amplitude = 0, phase = Math.PI / 2, label, quantity, unit, scale = 'viridis', test = 'surface'}) {
+export function SurfaceView({positions, triangles, values, shape, amplitude = 0, phase = Math.PI / 2, label, quantity, unit, scale = 'viridis', names = AXES, hasEdges = true,
+  test = 'surface'}) {
   const canvas = useRef(null);
   const [view, setView] = useState(FIRST);
   const [theme, setTheme] = useState(0);
   const {painter, size} = usePainter(canvas);
   const box = useMemo(() => boxOf(positions), [positions]);
-  const edges = useMemo(() => edgesOf(positions, triangles), [positions, triangles]);
+  const edges = useMemo(() => (hasEdges ? edgesOf(positions, triangles) : new Uint32Array(0)), [positions, triangles, hasEdges]);
   const ends = useMemo(() => extent(values), [values]);
   const largest = useMemo(() => largestOf(shape ?? []), [shape]);
   const sides = box.sides.map((side) => side + 2 * Math.abs(amplitude) * largest); // with the motion
@@ -232,7 +234,7 @@ export function SurfaceView({positions, triangles, values, shape, amplitude = 0,
     <div class="surface-row">
       <canvas ref=${canvas} role="img" tabindex=${isDrawn ? 0 : undefined} class="surface-canvas" hidden=${!isDrawn} aria-label=${label} onKeyDown=${press}
         onWheel=${wheel} onPointerDown=${(event) => canvas.current.setPointerCapture(event.pointerId)} onPointerMove=${move} data-test=${`${test}-canvas`} />
-      ${isDrawn && html`<${Directions} rows=${rows} /><${ColourScale} field=${{values: [ends], scale, scale_text: unit ? `${quantity} (${unit})` : quantity}} height=${220} />`}
+      ${isDrawn && html`<${Directions} rows=${rows} names=${names} /><${ColourScale} field=${{values: [ends], scale, scale_text: unit ? `${quantity} (${unit})` : quantity}} height=${220} />`}
     </div>
     ${!isDrawn && html`<p class="notice" role="status" data-test="no-webgl">This browser has no WebGL2 at present, so the body is not drawn; its numbers stand in the table.</p>`}
     ${isDrawn && html`<div class="row surface-tools" role="group" aria-label="View">
@@ -244,8 +246,8 @@ export function SurfaceView({positions, triangles, values, shape, amplitude = 0,
 }
 
 /** Directions of x, y and z as they are seen. */
-const Directions = ({rows}) => html`<svg class="surface-directions" viewBox="-30 -30 60 60" width="60" height="60" aria-hidden="true">
-  ${['x', 'y', 'z'].map((name, axis) => html`<g key=${name}><path d=${`M0 0L${18 * rows[0][axis]} ${-18 * rows[1][axis]}`} stroke="currentColor" stroke-width="1.5" />
+const Directions = ({rows, names}) => html`<svg class="surface-directions" viewBox="-30 -30 60 60" width="60" height="60" aria-hidden="true">
+  ${names.map((name, axis) => html`<g key=${name}><path d=${`M0 0L${18 * rows[0][axis]} ${-18 * rows[1][axis]}`} stroke="currentColor" stroke-width="1.5" />
     <text x=${25 * rows[0][axis]} y=${-25 * rows[1][axis]} dy="0.35em" text-anchor="middle">${name}</text></g>`)}</svg>`;
 
 /** Surface that moves along its shape, with its controls: play and pause, phase, slow; still at first where motion is not wanted. @param {object} props as of `SurfaceView` */
