@@ -66,7 +66,8 @@ def test_shapes_are_those_of_the_task(tmp_path: Path) -> None:
     points, triangles = numbers(shapes["points"]).reshape(-1, 3), numbers(shapes["triangles"], "<u4").reshape(-1, 3)
     volume = np.abs(np.linalg.det(points[triangles].astype(float))).sum() / 6  # divergence theorem, seen from within
     assert volume == approx(np.pi * RADIUS**2 * LENGTH, rel=5e-3)  # of flat triangles
-    assert write_files(mode_files(found), folder=tmp_path) == [SHAPES_FILE]
+    assert write_files(mode_files(found), folder=tmp_path, line="made by a test") == [SHAPES_FILE]
+    assert json.loads((tmp_path / SHAPES_FILE).read_text(encoding="utf-8"))["modes"] == shapes["modes"]
 
 
 def test_a_transducer_has_shapes_without_a_stress_that_its_electric_fields_would_change() -> None:
