@@ -45,7 +45,7 @@ def shapes(horn: Any) -> dict[str, Any]:
 def test_the_tuned_mode_has_the_numbers_of_the_task(horn: Any, shapes: dict[str, Any]) -> None:
     answer = horn.object()
     mode = next(each for each in shapes["modes"] if each["name"] == answer["mode"])
-    assert mode["reference"] == "the working face"
+    assert mode["reference"] == "the displacement of the working face"
     assert mode["end_ratio"] == approx(answer["displacement_gain"]["value"], rel=1e-6)
     assert mode["nodal_planes"] == approx([1e3 * answer["node_position"]["value"]])
     assert mode["nodal_planes"] == approx([500 * answer["total_length"]["value"]], rel=1e-3)  # of a straight bar
@@ -76,6 +76,16 @@ def test_a_transducer_has_shapes_without_a_stress_that_its_electric_fields_would
     names = [each["name"] for each in found.object()["spectra"]["free"]["modes"]]
     assert [each["name"] for each in modes] == names
     assert {each["stress"] for each in modes} == {None}
+
+
+def test_modes_of_another_program_have_no_solid_to_show(tmp_path: Path) -> None:
+    table = tmp_path / "modes.csv"
+    table.write_text(
+        "natural_frequency [Hz],damping_ratio,drive_participation [N/V],contact_participation\n20000,0.002,0.5,1.2\n"
+    )
+    found = sl.modes(from_file=table, clamped_capacitance="4.2 nF")
+    assert mode_files(found) == {}
+    assert found.files()
 
 
 def test_every_part_has_fields_that_make_it() -> None:
