@@ -36,6 +36,7 @@ def every_picture() -> Shots:
             yield from _pages(page, workbench)
             yield from _scan(page, workbench, Path(folder))
             yield from _data(page, workbench, Path(folder))
+            yield from _modes(page, workbench)
         yield from _without_an_answer(browser, workbench)
 
 
@@ -100,6 +101,21 @@ def _scan(page: Page, workbench: Served, folder: Path) -> Shots:
     page.get_by_test_id("surface-canvas").wait_for()
     at_rest(page)
     yield "scan-relief", page.get_by_test_id("scan").screenshot()
+
+
+def _modes(page: Page, workbench: Served) -> Shots:
+    """A horn that was tuned to 20 kHz, with its stress."""
+    page.emulate_media(reduced_motion="reduce")
+    show(page, workbench, "tribometer", {}, where="modes")
+    page.get_by_test_id("work:tune").check()
+    page.get_by_test_id("modes:material").select_option("titanium_6al4v")
+    for name, text in {"size.end_radius": "10 mm", "tune.amplitude": "20 um"}.items():
+        page.get_by_test_id(f"modes:{name}").fill(text)
+        page.keyboard.press("Enter")
+    page.get_by_test_id("start-job").click()
+    page.get_by_test_id("colour").select_option("stress")
+    page.get_by_test_id("surface-canvas").hover()
+    yield "modes", page.screenshot(full_page=True, clip={"x": 0, "y": 0, "width": 1280, "height": 960})
 
 
 def _without_an_answer(browser: Browser, workbench: Served) -> Shots:
