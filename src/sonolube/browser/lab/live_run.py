@@ -138,6 +138,7 @@ class LiveRun:
             "prompt": None if prompt is None else {"task": prompt.task, "text": prompt.text},
             "trips": list(self._trips),
             "is_paused": self._state == "paused" or self._control.is_paused,
+            "is_stopping": bool(self._control.stop_reason) or self._state == "stopping",
             "is_ended": self.has_ended.is_set(),
             "is_lost": False,
         }

@@ -303,6 +303,7 @@ def _bare(record: RunnerRecord) -> dict[str, Any]:
         "prompt": None,
         "trips": [],
         "is_paused": False,
+        "is_stopping": False,
         "is_ended": False,
         "is_lost": False,
     }

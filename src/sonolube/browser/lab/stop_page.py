@@ -16,7 +16,7 @@ from typing import Any, Final
 import uvicorn
 from starlette.applications import Starlette
 from starlette.requests import Request
-from starlette.responses import RedirectResponse, Response, StreamingResponse
+from starlette.responses import Response, StreamingResponse
 from starlette.routing import Route
 
 from sonolube.browser.access import Access, Guard
@@ -96,6 +96,10 @@ class StopServer:
     async def _page(self, request: Request) -> Response:
         """Page with the state of the run and the button."""
         del request
+        return self._shown()
+
+    def _shown(self) -> Response:
+        """Page with the present state; no redirect to it, for the server may end with the run."""
         return Response(stop_page(self._live.status()), media_type="text/html", headers={"cache-control": "no-store"})
 
     async def _stop(self, request: Request) -> Response:
@@ -107,7 +111,7 @@ class StopServer:
             waited += _POLL
         if "json" in request.headers.get("accept", ""):
             return _json(self._live.status())
-        return RedirectResponse("./", status_code=303)
+        return self._shown()
 
     async def _status(self, request: Request) -> Response:
         """State of the run."""
@@ -174,7 +178,7 @@ def stop_page(status: dict[str, Any]) -> str:
     if is_ended:
         head = "The run has ended: motor and drive are off" if is_safe else "Cut the power: motor or drive may be on"
     else:
-        head = "A run is at work"
+        head = "Stopping: motor and drive are being switched off" if status["is_stopping"] else "A run is at work"
     facts = {
         "run": status.get("title") or status.get("protocol") or "",
         "state": f"{status['outcome'] or status['state']}{': ' if status['reason'] else ''}{status['reason']}",
@@ -188,7 +192,7 @@ def stop_page(status: dict[str, Any]) -> str:
     replaced = {
         "HEAD": escape(head),
         "CLASS": "" if is_safe else ' class="danger"',
-        "BUTTON": "" if is_ended else f"{button}<p>{note}</p>",
+        "BUTTON": "" if is_ended else f'{button}<p>{note}</p><p><a href="./">Look again</a></p>',
         "FACTS": rows,
         "SAFETY": escape(SAFETY),
     }
