@@ -33,6 +33,7 @@ _SILENCE: Final = 1.0  # s, after which a frame is sent without news
 _STOPPING: Final = 3.0  # s, for which a request to stop waits
 _POLL: Final = 0.02  # s
 _LAST: Final = 5.0  # s, for what is still being sent at the end
+_MOST: Final = 16  # readers of frames at one time
 _STATIC: Final = frozenset({"stop.css", "link.css", "link.js", "icon.svg"})
 
 
@@ -46,7 +47,7 @@ class StopServer:
     """
 
     def __init__(self, live: LiveRun, control: RunControl) -> None:
-        self._live, self._requests = live, control
+        self._live, self._requests, self._readers = live, control, 0
         self._listening = socket.socket(socket.AF_INET, socket.SOCK_STREAM, socket.IPPROTO_TCP)
         self._listening.bind(("127.0.0.1", 0))
         self._listening.listen()
@@ -140,11 +141,22 @@ class StopServer:
     async def _stream(self, request: Request) -> Response:
         """Frames, a line of JSON each."""
         del request
+        if self._readers >= _MOST:
+            raise InvalidInput(f"{_MOST} pages watch the run already; close one")
         headers = {"cache-control": "no-store", "content-encoding": "identity"}
         return StreamingResponse(self._frames(), media_type="application/x-ndjson", headers=headers)
 
     async def _frames(self) -> AsyncIterator[bytes]:
         """Frames with news, at most 25 a second; a reader that is slow gets fewer, and the run waits for none."""
+        self._readers += 1
+        try:
+            async for frame in self._news():
+                yield encoded(frame) + b"\n"
+        finally:
+            self._readers -= 1
+
+    async def _news(self) -> AsyncIterator[dict[str, Any]]:
+        """Frames with news, and one a second without; the last is that of the end."""
         last, shown, silent = -1, "", 0.0
         while True:
             is_last = self._live.has_ended.is_set()
@@ -152,8 +164,8 @@ class StopServer:
             news = f"{frame['state']} {frame['prompt']} {frame['is_paused']} {len(frame['trips'])} {frame['step']}"
             if newest > last or news != shown or silent >= _SILENCE or is_last:
                 last, shown, silent = max(newest, last), news, 0.0
-                yield encoded(frame) + b"\n"
-            if is_last:
+                yield frame
+            if is_last and newest <= last and not frame["channels"]:
                 return
             await asyncio.sleep(_FRAME)
             silent += _FRAME
