@@ -136,7 +136,8 @@ def _is_own_page(headers: Mapping[str, str]) -> bool:
     origin, site = headers.get("origin"), headers.get("sec-fetch-site")
     if site is not None and site not in ("same-origin", "none"):
         return False
-    return origin is None or urlsplit(origin).netloc == headers.get("host")
+    is_bare = origin == "null" and site == "same-origin"  # a form of a page that tells nobody where it was
+    return origin is None or is_bare or urlsplit(origin).netloc == headers.get("host")
 
 
 def _with_headers(send: Send, *, is_stated: bool) -> Send:

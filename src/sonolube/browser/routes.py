@@ -93,11 +93,11 @@ class Workbench:
         return Response(content, media_type="text/html", headers={"cache-control": "no-cache"})
 
     async def _start(self, request: Request) -> Response:
-        """Rig that the first page shows, and what is offered."""
+        """Rig that the first page shows, and whether a run is at work, for the stop button of every page."""
         del request
         from sonolube import __version__
 
-        return _json({"rig": self.opened, "version": __version__})
+        return _json({"rig": self.opened, "version": __version__, "is_running": self.laboratory.is_at_work()})
 
     async def _description(self, request: Request) -> Response:
         """OpenAPI description of the tasks."""

@@ -84,6 +84,10 @@ class Laboratory:
             Route("/api/lab/runs/{id}/upload", self._upload, methods=["POST"]),
         ]
 
+    def is_at_work(self) -> bool:
+        """Whether a run is at work."""
+        return self._at_work() is not None
+
     def end(self) -> str:
         """Link of the stop page of a run that goes on without this process; empty where none is at work."""
         record = self._at_work()

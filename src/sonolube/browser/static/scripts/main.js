@@ -1,16 +1,16 @@
 /** Shell of the workbench: head with pages, undo, take away and theme; below it the page of the state. */
 import {html, render, useEffect, useErrorBoundary, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {ask, enter, useConnection} from './api.js';
-import {Button, capital, Loading, Refusal, Select, Sheet, useEvents, Warning} from './parts.js';
-import {addressOf, followAddress, PAGES, redo, stored, undo, useApp} from './state.js';
+import {Button, capital, Loading, Refusal, Select, Sheet, useEvents, useInView, Warning} from './parts.js';
+import {addressAsLeft, addressOf, followAddress, PAGES, redo, stored, undo, useApp} from './state.js';
 import {TakeAway} from './take-away.js';
 
 /** Pages with styles of their own, in `pages/` beside the scripts. */
-const STYLED = new Set(['data', 'modes', 'design', 'lab']);
+const STYLED = new Set(['data', 'modes', 'design', 'lab', 'jobs', 'dissertation']);
 
-/** Module of a page, read with its styles. */
-function read(page) {
-  const module = import(`./pages/${page === 'new' ? 'new-rig' : page}.js`);
+/** Module of a page, or another one that has its styles, read with them. */
+function read(page, path = `./pages/${page === 'new' ? 'new-rig' : page}.js`) {
+  const module = import(path);
   if (!STYLED.delete(page)) return module;
   const link = Object.assign(document.createElement('link'), {rel: 'stylesheet', href: `static/pages/${page}.css`});
   const styles = new Promise((done) => Object.assign(link, {onload: done, onerror: done}));
@@ -37,12 +37,14 @@ const ThemeSwitch = () => html`<label class="theme"><span class="hidden">Theme</
 
 function Head() {
   const {state, canUndo, canRedo} = useApp();
+  const links = useInView(state.page);
   useEvents(['keydown'], onKey);
+  useEvents(['dragover', 'drop'], stay);
   return html`<header class="head">
     <a class="skip" href="#answer" onClick=${skip}>Skip to the answer</a>
-    <a class="name" href=${addressOf('predict')}>sonolube</a>
-    <nav class="pages" aria-label="Pages">
-      ${Object.entries(PAGES).map(([page, title]) => html`<a key=${page} href=${addressOf(page)} data-test=${`page:${page}`}
+    <a class="name" href=${addressOf('predict')} data-test="home">sonolube</a>
+    <nav class="pages" aria-label="Pages" ref=${links}>
+      ${Object.entries(PAGES).map(([page, title]) => html`<a key=${page} href=${addressAsLeft(page)} data-test=${`page:${page}`}
         aria-current=${state.page === page ? 'page' : undefined}>${title}</a>`)}
     </nav>
     <div class="tools">
@@ -62,6 +64,11 @@ const Step = ({name, keys, step, can, kind = ''}) => html`<${Button} kind="icon"
 function skip(event) {
   event.preventDefault();
   document.getElementById('answer')?.focus();
+}
+
+/** Keep the browser from leaving the page for a file that is dropped where no page takes it. */
+function stay(event) {
+  if (event.dataTransfer?.types.includes('Files')) event.preventDefault();
 }
 
 /** What stands above the page while the workbench does not answer. */
@@ -100,13 +107,15 @@ function Page() {
   const Shown = pages[state.page];
   useEffect(() => {
     clear?.();
-    document.title = `${PAGES[state.page]} · sonolube`;
     if (!isFirst.current) scrollTo(0, 0);
     isFirst.current = false;
     if (Shown) return;
     const {page} = state;
     read(page).then((module) => module.default, () => Unread).then((shown) => setPages((old) => ({...old, [page]: shown})));
   }, [state.page]);
+  useEffect(() => {
+    document.title = `${PAGES[state.page]} · ${state.rig.name} · sonolube`;
+  }, [state.page, state.rig.name]);
   if (fault) return html`<${Broken} again=${clear} />`;
   return Shown ? html`<${Shown} />` : html`<${Sheet} title=${PAGES[state.page]}><${Loading}>Reading the page…<//><//>`;
 }
@@ -117,6 +126,23 @@ const Unread = () => html`<${Sheet} title="No page">
 const Broken = ({again}) => html`<${Sheet} title="No answer">
   <${Warning}><p><strong>This page made a mistake.</strong> What you typed is in the address of this page and not lost.</p>
     <${Button} onClick=${again}>Draw it again<//><//><//>`;
+
+const BETWEEN = 5000; // ms between looks whether a run is at work
+
+/** Stop button of a run of the laboratory, on every page; its module is read when a run is at work. */
+function AtWork() {
+  const [Stop, setStop] = useState(null);
+  const look = async () => {
+    if (!Stop && (await ask('api/start')).content?.is_running) setStop(await read('lab', './lab/stop.js').then((module) => () => module.default, () => null));
+  };
+  useEvents(['runstart'], look);
+  useEffect(() => {
+    look();
+    const timer = Stop ? 0 : setInterval(look, BETWEEN);
+    return () => clearInterval(timer);
+  }, [Stop]);
+  return Stop && html`<${Stop} />`;
+}
 
 /** Undo and redo by keys, where no text field has its own. */
 function onKey(event) {
@@ -146,7 +172,7 @@ async function start() {
   await followAddress(reply.content.rig);
   render(null, root);
   root.replaceChildren();
-  render(html`<${Head} /><${Connection} /><main id="main"><${Page} /></main>`, root);
+  render(html`<${AtWork} /><${Head} /><${Connection} /><main id="main"><${Page} /></main>`, root);
 }
 
 start();

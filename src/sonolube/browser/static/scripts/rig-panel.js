@@ -2,8 +2,8 @@
 import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {useReply} from './api.js';
 import {Field, focusField, spreadKey} from './fields.js';
-import {Button, FileButton, Loading, Refusal, Select} from './parts.js';
-import {addressOf, change, pack, setEntry, settle, useApp} from './state.js';
+import {Button, FileButton, Loading, Refusal, Select, useDrop} from './parts.js';
+import {addressOf, change, isOfTab, pack, setEntry, settle, useApp} from './state.js';
 
 /** Where the drawing of a rig shows values. */
 const PLACES = {
@@ -35,26 +35,21 @@ const textOf = (rig, field) => rig.changes[field.key] ?? field.text;
 const tableOf = (field) => field.key.slice(0, field.key.lastIndexOf('.'));
 
 /** Chooser of a rig: the examples, the one that was opened, an own file. */
-function RigChoice({view}) {
+export function RigChoice({view}) {
   const {state} = useApp();
-  const [note, setNote] = useState('');
   const own = state.rig.text !== undefined;
   const names = [...new Set([...(own ? [state.rig.name] : []), ...(view?.rigs ?? last.view?.rigs ?? []), state.rig.name])].filter(Boolean);
   const choices = names.map((name) => (own && name === state.rig.name ? ['', `${name} (own file)`] : [name, name]));
-  const choose = (event) => {
-    setNote('');
-    change({rig: {name: event.target.value, changes: {}}, view: {pin: null, disc: null, runs: null, lost: null}});
-  };
-  const open = async (file) => setNote(await openRigText(file.name.replace(/\.toml$/i, ''), await file.text()));
+  const choose = (event) => change({rig: {name: event.target.value, changes: {}}, view: {pin: null, disc: null, runs: null, lost: null}});
   return html`<div class="rig-choice">
-    <label for="rig-name">Rig</label>
-    <div class="row">
-      <${Select} id="rig-name" choices=${choices} value=${own ? '' : state.rig.name} onChange=${choose} data-test="rig" class="grow" />
-      <${FileButton} accept=".toml" label="Rig file" onFile=${open} test="rig-file" data-test="open-rig">Open…<//>
+    <div class="row"><label for="rig-name" class="grow">Rig</label>
+      <${FileButton} accept=".toml" label="Rig file" onFile=${openRig} test="rig-file" data-test="open-rig">Open…<//>
       <a class="button" href=${addressOf('new')}>New…</a>
     </div>
+    <${Select} id="rig-name" choices=${choices} value=${own ? '' : state.rig.name} onChange=${choose} data-test="rig" />
     ${view && html`<p class="hint" data-test="rig-title">${view.title}</p>`}
-    ${note && html`<p class="hint" role="status">${note}</p>`}
+    ${isOfTab(state.rig.text) && html`<p class="hint" role="status" data-test="of-tab">This file is too long for a link: it stays in this tab only.
+      Take it away as TOML to keep it.</p>`}
     <${Refusal} role="alert" data-test="lost" text=${state.view.lost
       && `The file of ${state.view.lost} is not in this link and no longer in this browser: open it again.`} />
   </div>`;
@@ -102,15 +97,13 @@ const Schematic = ({drawing, fields, rig}) => html`<svg class="schematic" viewBo
     ${fields.filter(({key}) => key in PLACES).map((field) => html`<${Value} key=${field.key} field=${field} text=${textOf(rig, field)} />`)}
   </svg>`;
 
-/**
- * Make the text of a rig file the rig of the state, and go to a page; returns a note where a link cannot hold it.
- * @param {string} name @param {string} text @param {string} [page] @returns {Promise<string>}
- */
+/** Make the text of a rig file the rig of the state, and go to a page. @param {string} name @param {string} text @param {string} [page] @returns {Promise<void>} */
 export async function openRigText(name, text, page = undefined) {
-  const {fits} = await pack(text);
+  await pack(text);
   change({...(page && {page}), rig: {name, text, changes: {}}, view: {lost: null}});
-  return fits ? '' : 'This file is too long for a link: it stays in this tab only. Take it away as TOML to keep it.';
 }
+
+const openRig = async (file) => openRigText(file.name.replace(/\.toml$/i, ''), await file.text());
 
 /** Rig with its drawing and fields; `extra` stands below those of the operating point. */
 export function RigPanel({extra}) {
@@ -150,9 +143,13 @@ export function RigPanel({extra}) {
   </aside>`;
 }
 
-/** Frame of a page with the rig: the lead above its answer (sticky on narrow screens), the rig, the answer. */
-export const Workspace = ({lead, extra, children}) => html`<div class="workspace">
-  <div class="lead" id="answer" tabindex="-1">${lead}</div>
-  <${RigPanel} extra=${extra} />
-  <div class="body">${children}</div>
+/** Frame of a page with the rig: the lead above its answer (sticky on narrow screens), the rig, the answer; `onFile` takes what is dropped beside a rig. */
+export function Workspace({lead, extra, onFile, children}) {
+  const isDropping = useDrop((files) => files.forEach((file) => (/\.toml$/i.test(file.name) ? openRig : onFile)?.(file)));
+  return html`<div class="workspace">
+    <div class="lead" id="answer" tabindex="-1">${lead}</div>
+    <${RigPanel} extra=${extra} />
+    <div class="body">${children}</div>
+    ${isDropping && html`<div class="drop" aria-hidden="true">Drop the rig${onFile && ' or the runs'} here</div>`}
   </div>`;
+}

@@ -15,6 +15,8 @@ export const PAGES = {
 const STEPS = 100; // of undo
 const LONGEST_TEXT = 8192; // characters of a compressed rig file that a link holds
 const KEPT_PREFIX = 'kept-';
+const WITH_RIG = ['predict', 'explore', 'design']; // pages that share some entries of their views
+const SHARED = ['runs', 'pin', 'disc', 'lubricant', 'lost'];
 
 /** @type {State} */
 let state = {page: 'predict', rig: {name: '', changes: {}}, view: {}};
@@ -40,6 +42,14 @@ export function stored(store, name, value) {
 /** Fragments to undo and to redo. */
 let [past, future] = JSON.parse(stored('sessionStorage', 'history') ?? '[[], []]');
 const keep = () => stored('sessionStorage', 'history', JSON.stringify([past, future]));
+/** View of each page when it was last shown, with what the pages of the rig share. */
+const views = JSON.parse(stored('sessionStorage', 'views') ?? '{}');
+function remember() {
+  const {page, view} = state;
+  views[page] = view;
+  if (WITH_RIG.includes(page)) WITH_RIG.forEach((each) => SHARED.forEach((name) => (views[each] = present({...views[each], [name]: view[name]}))));
+  stored('sessionStorage', 'views', JSON.stringify(views));
+}
 
 /** Draw a component again whenever a set of listeners is told. @param {Set<() => void>} to */
 export function useListening(to) {
@@ -54,26 +64,28 @@ export function useListening(to) {
 /** Text as bytes through a stream of the browser, as base64url or back. */
 const through = async (stream, bytes) => new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
 
-/** Compress the text of a rig so that a link can hold it; `fits` is false where only this tab can keep it. @param {string} text @returns {Promise<{code: string, fits: boolean}>} */
+/** Compress the text of a rig so that a link can hold it, and give its code; a long one is kept by this tab only. @param {string} text @returns {Promise<string>} */
 export async function pack(text) {
   const bytes = await through(new CompressionStream('deflate-raw'), new TextEncoder().encode(text));
   const binary = Array.from(bytes, (byte) => String.fromCharCode(byte)).join('');
   let code = btoa(binary).replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
-  const fits = code.length <= LONGEST_TEXT;
-  if (!fits) {
+  if (code.length > LONGEST_TEXT) {
     code = KEPT_PREFIX + code.slice(-24) + code.length;
     stored('sessionStorage', code, text);
   }
   packed.set(text, code);
-  return {code, fits};
+  return code;
 }
 
-async function unpack(code) {
-  if (code.startsWith(KEPT_PREFIX)) return stored('sessionStorage', code);
-  const binary = atob(code.replaceAll('-', '+').replaceAll('_', '/'));
-  const bytes = Uint8Array.from(binary, (letter) => letter.charCodeAt(0));
-  const text = new TextDecoder().decode(await through(new DecompressionStream('deflate-raw'), bytes));
-  packed.set(text, code);
+/** Whether the text of a rig is too long for a link. @param {string} [text] @returns {boolean} */
+export const isOfTab = (text) => Boolean(packed.get(text)?.startsWith(KEPT_PREFIX));
+
+/** Text of a code of `pack`; undefined where this tab no longer keeps it. @param {string} code @returns {Promise<string|undefined>} */
+export async function unpack(code) {
+  const isKept = code.startsWith(KEPT_PREFIX);
+  const bytes = isKept ? null : Uint8Array.from(atob(code.replaceAll('-', '+').replaceAll('_', '/')), (letter) => letter.charCodeAt(0));
+  const text = isKept ? stored('sessionStorage', code) : new TextDecoder().decode(await through(new DecompressionStream('deflate-raw'), bytes));
+  if (text !== undefined) packed.set(text, code);
   return text;
 }
 
@@ -131,6 +143,7 @@ export const settle = () => isMoving && commit();
 
 function commit() {
   if (enter(encode(state))) history.pushState(null, '', `#${fragment}`);
+  remember();
   tell();
 }
 
@@ -159,6 +172,7 @@ async function step(from, onto) {
   fragment = to;
   keep();
   history.replaceState(null, '', `#${to}`);
+  remember();
   tell();
 }
 
@@ -167,6 +181,8 @@ export const redo = () => step(future, past);
 
 /** Address of a page with the rig of now, for a link. @param {string} page @param {object} [view] @returns {string} */
 export const addressOf = (page, view = {}) => `#${encode({page, rig: state.rig, view})}`;
+/** Address of a page as it was left, for a link. @param {string} page @returns {string} */
+export const addressAsLeft = (page) => addressOf(page, page === state.page ? state.view : views[page]);
 
 /** Read the state from the address, and follow it; an address without a rig gets the one that was opened. @param {string} opened @returns {Promise<void>} */
 export async function followAddress(opened) {
@@ -187,8 +203,10 @@ export async function followAddress(opened) {
     if (encode(found) === fragment) return;
     state = found;
     enter(encode(state));
+    remember();
     tell();
   });
+  remember();
   tell();
 }
 
