@@ -9,6 +9,7 @@ from pathlib import Path
 from PIL import Image
 from playwright.sync_api import Browser, Page
 from tests.browser.pages import LOAD, VOLTS, at_rest, opened, show, started_browser
+from tests.browser.test_lab_page import SHORT, begin
 from tests.browser.workbench import Served, served
 
 NEW = {"pin": "steel", "disc": "steel", "load": "5 N", "speed": "0.1 m/s", "frequency": "22 kHz", "amplitude": "2 um"}
@@ -32,6 +33,7 @@ def every_picture() -> Shots:
                 yield f"predict-{name}", page.screenshot()
         with opened(browser, workbench) as page:
             yield from _pages(page, workbench)
+            yield from laboratory(page, workbench, Path(folder))
         yield from _without_an_answer(browser, workbench)
 
 
@@ -61,6 +63,23 @@ def _pages(page: Page, workbench: Served) -> Shots:
     page.get_by_test_id("use-rig").wait_for()
     at_rest(page)
     yield "new", page.screenshot()
+
+
+def laboratory(page: Page, workbench: Served, folder: Path) -> Shots:
+    """The page Lab with a run at work, and the page of the run itself."""
+    (folder / "short.toml").write_text(SHORT, encoding="utf-8")
+    show(page, workbench, "tribometer", {}, where="lab")
+    begin(page, folder / "short.toml")
+    page.get_by_test_id("confirm").click()
+    page.get_by_text("step 6").first.wait_for()
+    page.evaluate("scrollTo(0, 0)")
+    yield "lab", page.screenshot()
+    link = page.get_by_role("link", name="Stop page").first.get_attribute("href")
+    own = page.context.browser.new_page(viewport={"width": 640, "height": 520})  # type: ignore[union-attr]
+    own.goto(str(link))
+    yield "stop", own.screenshot()
+    own.get_by_role("button", name="Stop").click()
+    own.close()
 
 
 def _without_an_answer(browser: Browser, workbench: Served) -> Shots:
