@@ -75,7 +75,7 @@ def laboratory(page: Page, workbench: Served, folder: Path) -> Shots:
     page.evaluate("scrollTo(0, 0)")
     yield "lab", page.screenshot()
     link = page.get_by_role("link", name="Stop page").first.get_attribute("href")
-    own = page.context.browser.new_page(viewport={"width": 640, "height": 520})  # type: ignore[union-attr]
+    own = page.context.browser.new_page(viewport={"width": 640, "height": 620})  # type: ignore[union-attr]
     own.goto(str(link))
     yield "stop", own.screenshot()
     own.get_by_role("button", name="Stop").click()
