@@ -11,6 +11,7 @@ from playwright.sync_api import Browser, Page
 from tests.browser.pages import LOAD, VOLTS, at_rest, opened, show, started_browser
 from tests.browser.recordings import write_recordings
 from tests.browser.scans import write_groove
+from tests.browser.test_lab_page import SHORT, begin
 from tests.browser.workbench import Served, served
 
 NEW = {"pin": "steel", "disc": "steel", "load": "5 N", "speed": "0.1 m/s", "frequency": "22 kHz", "amplitude": "2 um"}
@@ -37,6 +38,7 @@ def every_picture() -> Shots:
             yield from _scan(page, workbench, Path(folder))
             yield from _data(page, workbench, Path(folder))
             yield from _modes(page, workbench)
+            yield from laboratory(page, workbench, Path(folder))
         yield from _without_an_answer(browser, workbench)
 
 
@@ -116,6 +118,23 @@ def _modes(page: Page, workbench: Served) -> Shots:
     page.get_by_test_id("colour").select_option("stress")
     page.get_by_test_id("surface-canvas").hover()
     yield "modes", page.screenshot(full_page=True, clip={"x": 0, "y": 0, "width": 1280, "height": 960})
+
+
+def laboratory(page: Page, workbench: Served, folder: Path) -> Shots:
+    """The page Lab with a run at work, and the page of the run itself."""
+    (folder / "short.toml").write_text(SHORT, encoding="utf-8")
+    show(page, workbench, "tribometer", {}, where="lab")
+    begin(page, folder / "short.toml")
+    page.get_by_test_id("confirm").click()
+    page.get_by_text("step 6").first.wait_for()
+    page.evaluate("scrollTo(0, 0)")
+    yield "lab", page.screenshot()
+    link = page.get_by_role("link", name="Stop page").first.get_attribute("href")
+    own = page.context.browser.new_page(viewport={"width": 640, "height": 620})  # type: ignore[union-attr]
+    own.goto(str(link))
+    yield "stop", own.screenshot()
+    own.get_by_role("button", name="Stop").click()
+    own.close()
 
 
 def _without_an_answer(browser: Browser, workbench: Served) -> Shots:
