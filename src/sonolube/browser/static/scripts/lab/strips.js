@@ -4,21 +4,16 @@ import {roundTicks, short, themeOf} from '../chart-scale.js';
 import {capital, useEvents} from '../parts.js';
 import {look} from './lab.js';
 /** @typedef {[number, number, number, number]} Slice time, lowest, highest, mean */
-
-const SPAN = 20; // s on a strip
-const AGAIN = 1000; // ms after a stream has ended
+const [SPAN, AGAIN] = [20, 1000]; // s on a strip, ms after a stream has ended
 const [LEFT, BOTTOM, TICK] = [48, 16, 24]; // px for numbers, times, and of a number's room
-const COLOUR = '#0072b2';
-const NONE = new Map();
-const MARGIN = 0.15; // of the range, above and below
+const [COLOUR, MARGIN, NONE] = ['#0072b2', 0.15, new Map()]; // the margin of the range, above and below
 
-/** Enter the slices of a frame into those that are kept, which begin before the strip does. @param {Map<string, Slice[]>} kept @param {Object<string, Slice[]>} channels */
+/** Enter the slices of a frame into those of the last seconds. @param {Map<string, Slice[]>} kept @param {Object<string, Slice[]>} channels */
 function enter(kept, channels) {
   for (const [name, slices] of Object.entries(channels)) {
     const known = kept.get(name) ?? [];
-    for (const slice of slices) if (!known.length || slice[0] > known.at(-1)[0]) known.push(slice);
-    const old = known.length ? known.findIndex(([time]) => time >= known.at(-1)[0] - SPAN) : 0;
-    kept.set(name, old > known.length / 2 ? known.slice(old) : known); // seldom
+    const all = [...known, ...slices.filter(([time]) => !known.length || time > known.at(-1)[0])]; // a stream that begins again repeats some
+    kept.set(name, all.filter(([time]) => time >= all.at(-1)[0] - SPAN));
   }
 }
 

@@ -2,7 +2,7 @@
 import {html, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {refusedBy, TextField} from '../fields.js';
 import {duration} from '../job.js';
-import {Button, classes, Refusal, Select, words} from '../parts.js';
+import {Button, capital, classes, Refusal, Select, words} from '../parts.js';
 
 const LANES = {repeat: 'Repeat', steps: 'Steps', motor: 'Motor', drive: 'Drive', record: 'Record'};
 const LANE_OF = {repeat: 'repeat', motor_speed: 'motor', drive: 'drive', voltage_steps: 'drive', sweep: 'drive', acquire: 'record'};
@@ -34,8 +34,8 @@ function Entry({field, wrong, set}) {
   const refusal = wrong?.key === field.key ? wrong.text : '';
   const [text, shared] = [refusal ? wrong.typed : field.text, {id, 'data-test': `entry:${field.key}`, ...refusedBy(id, refusal)}];
   const choices = field.kind === 'flag' ? ['true', 'false'] : field.choices;
-  return html`<div class="field"><label for=${id}>${field.label}</label>
-    ${choices?.length ? html`<${Select} choices=${['', ...choices].map((each) => [each, words(each)])} value=${text} onChange=${(event) => set(field.key, event.target.value)} ...${shared} />`
+  return html`<div class="field"><label for=${id}>${capital(field.label)}</label>
+    ${choices?.length ? html`<${Select} choices=${['', ...choices].map((each) => [each, words(each) || 'usual'])} value=${text} onChange=${(event) => set(field.key, event.target.value)} ...${shared} />`
     : html`<${TextField} text=${text} unit=${field.unit} onText=${(typed, isMoving) => !isMoving && set(field.key, typed)} onSettle=${() => null} ...${shared} />`}
     <${Refusal} text=${refusal} id=${`${id}-refusal`} data-test="entry-refusal" /></div>`;
 }
