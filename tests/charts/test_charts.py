@@ -123,6 +123,13 @@ def test_numbers_for_a_browser_have_six_digits() -> None:
     assert part["y"] == [3.33333e-13, -2.0]
 
 
+def test_a_number_of_numpy_is_a_plain_one() -> None:
+    note = Note(x=np.float64(2.0), y=np.float64(0.0), text="here")
+    chart = Chart(panels=(Panel(x=Axis("a", "m"), y=Axis("b", "N"), parts=(note,)),), size=(4.0, 3.0))
+    (part,) = chart_object(chart)["panels"][0]["parts"]
+    assert (part["x"], part["y"]) == (2.0, 0.0)
+
+
 def test_the_value_nought_of_a_rule_is_kept() -> None:
     panel = Panel(x=SPEED, y=Axis(label="Gap", unit="µm"), parts=(Rule(along="y", value=0.0),))
     (part,) = chart_object(Chart(panels=(panel,)))["panels"][0]["parts"]

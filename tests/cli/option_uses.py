@@ -178,6 +178,11 @@ MODES = {
         ("OUT/rig.toml", *KNOWN, "--amplitude", "3um", "--direction", "torsional", "--torsion-radius", "20mm"),
         {"--torsion-radius": "15mm"},
     ),
+    "new of a soft layer": Mode(
+        "new",
+        ("OUT/rig.toml", *KNOWN, "--pin", "felt", "--amplitude", "3um", "--layer-thickness", "3mm"),
+        {"--layer-thickness": "5mm"},
+    ),
     "new with an actuator": Mode(
         "new",
         ("OUT/rig.toml", *KNOWN, "--actuator", "sa050510", "--voltage", "40V"),
@@ -316,6 +321,14 @@ MODES = {
             "--body-mass": "2kg",
         },
     ),
+    "modes of another program with a static analysis": Mode(
+        "modes",
+        (
+            *("--from", "FOLDER/bar.unv", *FOREIGN, "--length-unit", "mm", "--force-unit", "N"),
+            *("--static-compliance", "1e-6m/N", "--displacement-per-volt", "-10nm/V"),
+        ),
+        {"--static-compliance": "2e-6m/N", "--displacement-per-volt": "-20nm/V"},
+    ),
     "impedance of a part": Mode(
         "impedance compute",
         ("block", *BAR, "--points", "5", "--tolerance", "0.9", "--to", "120kHz"),
@@ -437,6 +450,7 @@ MODES = {
         (RIG, "--target-friction", "0.15"),
         {
             "--target-friction": "0.2",
+            "--target-reduction": "50%",
             "--over": "structure.tip_mass=80g:120g",
             "--actuator": "catalogue",
             "--catalogue": "FOLDER/catalogue.toml",
@@ -479,6 +493,7 @@ MODES = {
             "--rate": "4kHz",
             "--noise": "0.01N",
             "--factor": "1.1",
+            "--disturbance": "20%",
             "--closed-loop": "5ms",
             "--voltage-limit": "20V",
             "--current-limit": "4A",
@@ -601,8 +616,12 @@ MODES = {
             "--group": "run",
             "--channel": "friction",
             "--section": "2",
+            "--part": "1s:9s",
         }
         | SHEETS,
+    ),
+    "friction of stated parts": Mode(
+        "measure friction", ("FOLDER/friction.csv",), {"--rest": "0s:1s", "--step": "1s:5s=10V"}
     ),
     "friction of a test in several files": Mode(
         "measure friction", ("FOLDER/friction.csv", "FOLDER/other.csv"), flags=("--join",)

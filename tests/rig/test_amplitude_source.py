@@ -57,6 +57,19 @@ def volts_of(rig: Rig) -> float:
     return rig.drive.voltage_peak_to_peak
 
 
+def test_a_computed_amplitude_stands_where_the_measured_one_is_of_another_structure() -> None:
+    heavier = (
+        "structure.tip_mass=175 g",
+        "drive.frequency=17.6 kHz",
+    )  # with which the stack cannot give 2.5 um at 22 kHz
+    with raises(InvalidInput, match="or choose the amplitude computed"):
+        friction_point(chosen("tribometer", "measured", *heavier))
+    alone = dict(chosen("tribometer", "computed", *heavier).content())
+    alone |= {"vibration": {"amplitude_source": "computed"}, "assumptions": {}}
+    expected = friction_point(rig_from(alone)).friction_ratio
+    assert friction_point(chosen("tribometer", "computed", *heavier)).friction_ratio == approx(expected, rel=1e-12)
+
+
 @pytest.mark.parametrize(("name", "source"), USES)
 def test_friction_simulate_and_many_points_agree(name: str, source: str) -> None:
     rig, expected = chosen(name, source), ratio_of(name, source)

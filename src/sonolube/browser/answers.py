@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from sonolube.rig import Rig
 
 _MODES: Final = "structure.file"  # the entry of a rig that names another file
+_PART: Final = "PART"  # an argument that is the name of a part, or a STEP file
 _DEVICES: Final = ("lab run", "lab hold", "lab check")  # which open a device
 
 
@@ -182,6 +183,8 @@ def _given(name: str, value: Any, mark: Any, places: Places, stack: ExitStack) -
         return None if value is None else given_rig(value, places, stack)
     assert isinstance(mark, Parameter)
     if isinstance(mark, File):
+        if mark.kind == _PART and isinstance(value, str) and value.isidentifier():
+            return value  # a part by its name, which no file has that would be read as one
         several = isinstance(value, list)
         files = [_file(name, each, places) for each in (value if several else [value])]
         return files if several else files[0]

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sonolube.browser.answers import answer_object, called, given_arguments, offered_task
+from sonolube.browser.kinds import WITH_MODES
 from sonolube.browser.made_by import made_by, marked
 from sonolube.browser.places import Places
 from sonolube.browser.worker import encoded, limit_process
@@ -17,7 +18,7 @@ from sonolube.storage.files import write_atomically
 from sonolube.tasks.task import marks_of
 
 if TYPE_CHECKING:
-    from sonolube.tasks.answer import Content
+    from sonolube.tasks.answer import Answer, Content
 
 _CPU_TIME = 600  # seconds
 _BETWEEN = 0.2  # seconds from one record of progress to the next
@@ -55,7 +56,8 @@ def main(folder: Path) -> None:
             record.of = line.removeprefix("Made by ")
             watch = {"progress": record.progress} if "progress" in marks_of(task.function) else {}
             answer = called(task, given | watch)
-            names = write_files(answer.files(), folder=folder / "files", line=line)
+            files = dict(answer.files()) | dict(_page_files(task.name, answer))
+            names = write_files(files, folder=folder / "files", line=line)
             more = {"files": names, "made_by": line}
             write_atomically(folder / "result.json", encoded(answer_object(answer) | more).decode())
     except SonolubeError as failure:
@@ -64,6 +66,15 @@ def main(folder: Path) -> None:
         record.write("failed", reason="does not fit into the 2 GiB of memory of a job; ask for fewer points")
     else:
         record.write("done")
+
+
+def _page_files(task: str, answer: "Answer") -> "Mapping[str, Content]":
+    """Files that a page shows beside those of the answer."""
+    if task not in WITH_MODES:
+        return {}
+    from sonolube.browser.mode_view import mode_files
+
+    return mode_files(answer)
 
 
 def write_files(contents: "Mapping[str, Content]", *, folder: Path, line: str) -> list[str]:

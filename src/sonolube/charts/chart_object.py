@@ -65,7 +65,7 @@ def _record_object(record: Any) -> dict[str, Any]:
         value = getattr(record, each.name)
         if each.name == "colour":
             found[each.name] = colour_code(value)
-        elif isinstance(value, np.ndarray) or not (value is None or value is False or value in ("", ())):
+        elif isinstance(value, np.ndarray | np.generic) or not (value is None or value is False or value in ("", ())):
             found[each.name] = _plain(value)
     return found
 
@@ -76,6 +76,8 @@ def _plain(value: Any) -> Any:
         return _record_object(value)
     if isinstance(value, np.ndarray):
         return _numbers(value)
+    if isinstance(value, np.generic):
+        return value.item()
     if isinstance(value, str):
         return with_micro_sign(value)
     return [_plain(each) for each in value] if isinstance(value, tuple) else value

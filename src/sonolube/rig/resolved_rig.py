@@ -13,6 +13,7 @@ from sonolube.models.contact import ExponentialHeights, RoughContact
 from sonolube.models.contact.rough import decay_length, normal_force, normal_stiffness, separation, separation_range
 from sonolube.models.dynamics import ExponentialGap, GapLaw, StartUpRamp, TabulatedGap, contact_receptance
 from sonolube.models.friction.models import FrictionModel
+from sonolube.models.friction.models.soft_layer import SoftLayerModel
 from sonolube.rig import amplitude_source
 from sonolube.rig.driven_rig import DrivenRig, DriveVoltage, actuator_capacitance, driven_rig
 from sonolube.rig.record import AMPLITUDE_SOURCES, AmplitudeSource, Rig
@@ -177,9 +178,9 @@ def resolved_vibration(resolved: ResolvedRig) -> amplitude_source.ResolvedVibrat
 
 
 def rest_separation(rig: Rig) -> float:
-    """Separation of a rig's surfaces at rest; a load that leaves none is refused. [m]"""
+    """Separation of a rig's surfaces at rest; a load that leaves none is refused, but on a soft layer. [m]"""
     gap = float(separation(rig.contact, normal_load=rig.normal_load))
-    if gap <= 0:
+    if gap <= 0 and not isinstance(rig.friction_model, SoftLayerModel):
         raise OutsideRange(
             f"contact.normal_load {rig.normal_load:g} N leaves no separation between the surfaces (d = {gap:.3g} m): "
             "lower the load or enlarge contact.nominal_area"
@@ -211,7 +212,7 @@ def amplitude_labels(rig: Rig | ResolvedRig) -> dict[str, str]:
 def source_caveats(resolved: ResolvedRig, *, vibration_amplitude: float) -> tuple[str, ...]:
     """Line where the amplitudes of two sources of a rig differ by more than their error, at its own drive."""
     taken = resolved.vibration.source
-    found = {source: resolved.amplitude_by(source) for source in resolved.sources if source != taken}
+    found = {source: _amplitude_beside(resolved, source) for source in resolved.sources if source != taken}
     error = {
         source: amplitude_source.AMPLITUDE_ERROR * max(other, vibration_amplitude) for source, other in found.items()
     }
@@ -226,6 +227,14 @@ def source_caveats(resolved: ResolvedRig, *, vibration_amplitude: float) -> tupl
         f"the amplitudes differ by more than their error of {100 * amplitude_source.AMPLITUDE_ERROR:.0f} %: {taken}"
         f" {format_si(vibration_amplitude, 'm')}, taken here, and {', '.join(others)}",
     )
+
+
+def _amplitude_beside(resolved: ResolvedRig, source: AmplitudeSource) -> float:
+    """Amplitude by a source that is not taken; NaN where the rig has none by it. [m]"""
+    try:
+        return resolved.amplitude_by(source)
+    except SonolubeError:
+        return float("nan")
 
 
 def held_back_caveats(resolved: ResolvedRig, *, vibration_amplitude: float) -> tuple[str, ...]:

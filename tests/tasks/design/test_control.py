@@ -29,7 +29,7 @@ def test_quantities_as_text_and_in_si_give_the_answer_of_the_command(
 
 def test_the_figures_have_the_target_the_limit_and_the_motion_of_the_slider(rigs: Path) -> None:
     found = control(rigs / "collar.toml", friction="1.5N", duration="40ms", warming="20K", stick_slip=True)
-    loop, design, motion = (drawing.chart() for drawing in found.figures().values())  # type: ignore[misc]
+    loop, design, disturbed, motion = (drawing.chart() for drawing in found.figures().values())  # type: ignore[misc]
     histories = [part for part in loop.panels[0].parts if isinstance(part, Line)]
     assert [line.label for line in histories] == ["frequency fixed", "resonance tracked", "target"]
     assert [panel.y.unit for panel in loop.panels] == ["N", "V", "kHz"]
@@ -41,7 +41,10 @@ def test_the_figures_have_the_target_the_limit_and_the_motion_of_the_slider(rigs
     still, vibrating = (part for part in motion.panels[0].parts if isinstance(part, Line))
     assert np.ptp(still.y) > np.ptp(vibrating.y)
     assert still.x.size <= 3000
-    for chart in (loop, design, motion):
+    shown, wanted = (part for part in disturbed.panels[0].parts if isinstance(part, Line))
+    assert np.interp([-0.3, 0.3], shown.x, shown.y) == approx([1.5, 1.65], rel=1e-3)  # 10 % more at the step
+    assert wanted.y == approx(np.full(wanted.x.size, 1.5))
+    for chart in (loop, design, disturbed, motion):
         draw_chart(chart)
 
 

@@ -42,6 +42,7 @@ from .process import (
     simc_gains as simc_gains,
     stability_margins as stability_margins,
 )
+from .rejection import DisturbanceRejection as DisturbanceRejection, disturbance_rejection as disturbance_rejection
 from .resonance_tracking import (
     Amplifier as Amplifier,
     FrequencyTracker as FrequencyTracker,

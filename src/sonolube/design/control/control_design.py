@@ -154,6 +154,17 @@ class ControlDesign:
     response: StepResponseMetrics
     energy: ControlEnergy
 
+    @property
+    def loop(self) -> FrictionLoop:
+        """Plant, controller and resonance tracking."""
+        return FrictionLoop(
+            plant=self.plant,
+            mode=self.mode,
+            controller=self.controller,
+            tracker=self.tracker,
+            level_maximum=self.level_maximum,
+        )
+
 
 def design_control(
     rig: Rig, settings: ControlSettings, *, mode: VibrationMode | None = None, line: EfficiencyLine | None = None

@@ -25,7 +25,8 @@ from sonolube.design.optimisation.space import OWN_ACTUATOR, Candidate
 from sonolube.models.actuator import matched_power_factor
 from sonolube.rig import with_tables
 from sonolube.rig.datasets import labels
-from sonolube.vocabulary import quantities
+from sonolube.text.units import format_si
+from sonolube.vocabulary import quantities, quantity
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -210,6 +211,54 @@ def design_counts(optimum: Optimum) -> dict[str, int]:
     }
 
 
+def design_changes(content: Mapping[str, Any], problem: DesignProblem, point: DesignPoint) -> dict[str, str]:
+    """Entries of a rig file, as texts with units by dotted key, that make the rig of the file that of a design point.
+
+    Parameters
+    ----------
+    content : mapping
+        Parsed content of the file, including entries changed on the command line.
+    problem : DesignProblem
+    point : DesignPoint
+
+    Returns
+    -------
+    dict of str to str
+        With six digits. An amplitude that was measured stays in the file, but is no longer the one that is taken.
+
+    See Also
+    --------
+    design_text
+    """
+    rig, candidate = design_rig(problem, point), point.candidate
+    drive = {name: getattr(rig.drive, name) for name in ("frequency", "voltage_peak_to_peak", "voltage_offset")}
+    changes: dict[str, Any] = {f"drive.{name}": value for name, value in drive.items()}
+    changes["drive.waveform"] = candidate.waveform
+    changes |= {f"structure.{name}": value for name, value in candidate.entries.items()}
+    changes["vibration.amplitude_source"] = "computed"
+    actuator = content.get("actuator", {})
+    if candidate.actuator != OWN_ACTUATOR or problem.space.bolt is not None:
+        stack = asdict(replace(rig.stack, coupling_factor=None))
+        if "coupling_factor" in content["stack"]:
+            stack["coupling_factor"] = rig.stack.derived_coupling_factor  # the stated one was of the unaltered stack
+        changes |= {f"stack.{name}": value for name, value in stack.items() if value is not None}
+        if "capacitance" in actuator:
+            changes["actuator.capacitance"] = rig.stack.free_capacitance
+    if "amplitude_per_volt" in actuator:
+        changes["actuator.amplitude_per_volt"] = _amplitude_per_volt(rig.voltage_peak_to_peak, point)
+    return {key: value if isinstance(value, str) else _entry_text(key, value) for key, value in changes.items()}
+
+
+def _amplitude_per_volt(voltage_peak_to_peak: float, point: DesignPoint) -> float:
+    """Computed amplitude of a design over its voltage. [m/V]"""
+    return float(point.evaluation.quantities["vibration_amplitude"][0]) / voltage_peak_to_peak
+
+
+def _entry_text(key: str, value: float) -> str:
+    """Value of an entry with its unit, to six digits."""
+    return format_si(value, quantity(key.rpartition(".")[2]).unit, digits=6)
+
+
 def design_text(text: str, content: Mapping[str, Any], problem: DesignProblem, point: DesignPoint) -> str:
     """Rig file of a design point: the original file with the tables that the design changes.
 
@@ -244,9 +293,7 @@ def design_text(text: str, content: Mapping[str, Any], problem: DesignProblem, p
     if "actuator" in content:
         changed["actuator"] = dict(content["actuator"]) | {"capacitance": rig.stack.free_capacitance}
         if "amplitude_per_volt" in content["actuator"]:
-            changed["actuator"]["amplitude_per_volt"] = (
-                float(point.evaluation.quantities["vibration_amplitude"][0]) / rig.voltage_peak_to_peak
-            )
+            changed["actuator"]["amplitude_per_volt"] = _amplitude_per_volt(rig.voltage_peak_to_peak, point)
             assumptions["actuator.amplitude_per_volt"] = "computed at this drive"
     if "vibration" in content:
         assumptions = {key: text for key, text in assumptions.items() if not key.startswith("vibration.")}

@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal, Unpack
 from sonolube.design import control as loops
 from sonolube.design.control import stick_slip as figures
 from sonolube.design.control.control_design import control_dataset
+from sonolube.design.control.rejection import rejection_chart
 from sonolube.design.control.stick_slip import StickSlipSuppression, stick_slip_suppression
 from sonolube.errors import InvalidInput
 from sonolube.facts.metrics import EfficiencyLine
@@ -132,6 +133,7 @@ class ControlAnswer(Answer):
     rig: Rig
     settings: loops.ControlSettings
     study: loops.ControlDesign
+    rejection: loops.DisturbanceRejection
     suppression: StickSlipSuppression | None
     assumed: Mapping[str, str]
 
@@ -139,12 +141,14 @@ class ControlAnswer(Answer):
         """Operating point, controller, margins, step response and energy."""
         return [
             operating_point(self.rig),
-            Rows([*amplitude_rows(self.rig), *results.facts(self.settings, self.study, self.suppression)]),
+            Rows(
+                [*amplitude_rows(self.rig), *results.facts(self.settings, self.study, self.rejection, self.suppression)]
+            ),
         ]
 
     def object(self) -> dict[str, Any]:
         """Controller, margins, step response, energy and stick-slip."""
-        return results.control_object(self.rig, self.settings, self.study, self.suppression)
+        return results.control_object(self.rig, self.settings, self.study, self.rejection, self.suppression)
 
     def caveats(self) -> Sequence[str]:
         """Those of the rig at its own operating point, a thin gain margin, and a resonance that tracking has lost."""
@@ -158,7 +162,7 @@ class ControlAnswer(Answer):
         return assumptions
 
     def figures(self) -> Mapping[str, Drawing]:
-        """Run in closed loop, design of the loop, and stick-slip where it was computed."""
+        """Run in closed loop, design of the loop, a disturbance, and stick-slip where it was computed."""
         study, suppression = self.study, self.suppression
         drawings = {
             self._name: Drawing(
@@ -171,6 +175,10 @@ class ControlAnswer(Answer):
                 " sensitivity function.",
             ),
         }
+        drawings[f"{self._name}-disturbance"] = Drawing(
+            chart=lambda: rejection_chart(study, self.rejection),
+            caption=f"Friction of {self.rig.title} at its target when the real friction steps; every point computed.",
+        )
         if suppression is not None:
             drawings[f"{self._name}-stick-slip"] = Drawing(
                 chart=lambda: figures.stick_slip_chart(suppression),
@@ -180,10 +188,13 @@ class ControlAnswer(Answer):
 
     def files(self) -> "Mapping[str, str | Dataset]":
         """Run as netCDF, controller as C source, and its lookup table."""
+        from sonolube import __version__
+
         controller, title = self.study.controller, self.rig.title
+        origin = "; ".join([title, *self.rig.changes, f"made by sonolube {__version__}"])
         return {
             f"{self._name}.nc": control_dataset(self.study, title=f"Friction control of {title}"),
-            f"{self._name}.c": loops.controller_source(controller, self.study.tracker, title=title),
+            f"{self._name}.c": loops.controller_source(controller, self.study.tracker, title=origin),
             f"{self._name}.csv": loops.lookup_table(controller),
         }
 
@@ -193,7 +204,7 @@ class ControlAnswer(Answer):
             name="control",
             title=f"Friction control of {self.rig.title}",
             settings=rig_settings(self.rig),
-            facts=results.facts(self.settings, self.study, self.suppression),
+            facts=results.facts(self.settings, self.study, self.rejection, self.suppression),
             tables=[results.lookup_table(self.study)],
         )
 
@@ -237,6 +248,9 @@ def control(
     rate: Rate = "5kHz",
     noise: Annotated[Number, Quantity("Standard deviation of the sensor.", "N")] = "0N",
     factor: Annotated[float, Parameter("Real friction over that of the model.", lowest=0.01, highest=100)] = 1.0,
+    disturbance: Annotated[
+        Number, Quantity("Step of the real friction, whose rejection is computed.", "", kind="SHARE")
+    ] = "10%",
     closed_loop: ClosedLoop = None,
     amplitude_limit: Annotated[
         Number | None, Quantity("Largest amplitude of a rig without a voltage; the rig's own by default.", "m")
@@ -262,6 +276,9 @@ def control(
     known = rig_of(rig)
     interval, dead_time, run_time = _times(rate, delay, duration)
     final_rise = in_si("warming", warming)
+    friction_step = in_si("disturbance", disturbance)
+    if not -0.9 <= friction_step <= 9 or friction_step == 0:
+        raise InvalidInput(f"{shown('disturbance')} {disturbance} must lie between -90 and 900 %, and not be zero")
     if feed_forward != "efficiency":
         because = f"for {shown('feed_forward')} {feed_forward}; it is for efficiency"
         refuse_unused("efficiency", because=because)
@@ -296,11 +313,20 @@ def control(
         mode, assumed = resonance_without_structure(known, quality, coupling)
         line = _efficiency_line(in_si("efficiency", efficiency)) if feed_forward == "efficiency" else None
         study = loops.design_control(known, settings, mode=mode, line=line)
+        rejection = loops.disturbance_rejection(
+            study.loop,
+            friction_force=study.friction_force,
+            friction_step=friction_step,
+            duration=run_time,
+            friction_factor=factor,
+        )
         suppression = stick_slip_suppression(known, study) if stick_slip else None
     if commanded_quantity(known) is AMPLITUDE and amplitude_limit is None:
         own = format_si(own_level(known), "m")
         assumed["amplitude limit"] = f"the rig's own amplitude, {own}; {shown('amplitude_limit')} gives another"
-    return ControlAnswer(rig=known, settings=settings, study=study, suppression=suppression, assumed=assumed)
+    return ControlAnswer(
+        rig=known, settings=settings, study=study, rejection=rejection, suppression=suppression, assumed=assumed
+    )
 
 
 def _limits(

@@ -46,8 +46,15 @@ _WAVEFORM = "drive.waveform"
 _WAVEFORMS = ("sine", "square", "triangle", "sawtooth")
 
 
-def target_ratio(rig: Rig, target: str | float) -> float:
-    """Target friction over friction without vibration, from a coefficient or a force."""
+def target_ratio(rig: Rig, target: str | float | None, reduction: float | None = None) -> float:
+    """Target friction over friction without vibration, from a coefficient or a force, or from the reduction."""
+    if (target is None) == (reduction is None):
+        raise InvalidInput(f"give {shown('target_friction')}, or {shown('target_reduction')} in its place")
+    if reduction is not None:
+        if not 0 < reduction < 1:
+            raise InvalidInput(f"{shown('target_reduction')} must lie between 0 and 100 %, got {100 * reduction:.4g} %")
+        return 1 - reduction
+    assert target is not None
     force = friction_force("target_friction", target, normal_load=rig.normal_load)
     intrinsic = rig.friction_coefficient * rig.normal_load
     if not force < intrinsic:
@@ -169,8 +176,8 @@ class OptimisationAnswer(Answer):
         ]
 
     def object(self) -> dict[str, Any]:
-        """Best designs, front, number of designs, amplifier and networks."""
-        return results.optimum_object(self.optimum, self.electric)
+        """Best designs and front with the entries that make each, number of designs, amplifier and networks."""
+        return results.optimum_object(self.optimum, self.electric, content=self.rig.content())
 
     def caveats(self) -> Sequence[str]:
         """Values at the end of their range, heat beyond the amplifier's power, and a preload that is not given."""
@@ -265,7 +272,12 @@ _CATALOGUE = File("Further actuators, in the format of the built-in list.", "FIL
 def optimise(
     rig: RestingRig,
     *,
-    target_friction: Annotated[str | float, Parameter("Coefficient or force, such as 0.1 or 0.3N.", "FRICTION")],
+    target_friction: Annotated[
+        str | float | None, Parameter("Coefficient or force, such as 0.1 or 0.3N.", "FRICTION")
+    ] = None,
+    target_reduction: Annotated[
+        Number | None, Quantity("Reduction of friction in its place, such as 60 %.", "", kind="SHARE")
+    ] = None,
     over: Annotated[Values | None, _OVER] = None,
     actuator: Annotated[Sequence[str], _ACTUATOR] = (),
     catalogue: Annotated[InputFile | None, _CATALOGUE] = None,
@@ -333,7 +345,7 @@ def optimise(
     )
     problem = optimisation.DesignProblem(
         space=space,
-        friction_ratio=target_ratio(known, target_friction),
+        friction_ratio=target_ratio(known, target_friction, in_si("target_reduction", target_reduction)),
         limits=limits,
         tolerance=None if robust is None else optimisation.Tolerance(manufacturing_tolerance=robust, quantile=quantile),
     )

@@ -37,10 +37,10 @@ function trace(context, line, map) {
 
 /**
  * Draw the parts of a panel.
- * @param {{map: Object, theme: Object, scale: number, behind: Object[], rule: Object|null, held: number|null}} of
- *   `behind` are kept lines; `held` is where the dragged `rule` stands, null where its data say it
+ * @param {{map: Object, theme: Object, scale: number, behind: Object[], rule: Object|null, held: number|null, ringed?: {x: number, y: number}}} of
+ *   `behind` are kept lines; `held` is where the dragged `rule` stands, null where its data say it; `ringed` is a point that is chosen
  */
-export function drawParts(context, panel, {map, theme, scale, behind, rule: dragged, held}) {
+export function drawParts(context, panel, {map, theme, scale, behind, rule: dragged, held, ringed}) {
   const draw = {line, band, points, rule, zone, bars, note, field: (part) => drawField(context, part, map, scale)};
   const {left, top, width, height} = map.box;
   const whole = {x: [left, left + width], y: [top, top + height]};
@@ -58,6 +58,11 @@ export function drawParts(context, panel, {map, theme, scale, behind, rule: drag
     if (part.kind === 'points' || part.kind === 'note') draw[part.kind](part);
     else inside(() => draw[part.kind](part));
   });
+  if (ringed) {
+    context.beginPath();
+    context.arc(map.x.to(ringed.x), map.y.to(ringed.y), 2.6 * MARKER * scale, 0, 2 * Math.PI);
+    stroke(theme.stroke('#d55e00'), 2.4);
+  }
 
   function line(part) {
     const colour = part.isKept ? theme.kept : theme.stroke(part.colour);
@@ -212,9 +217,10 @@ function shadeOf(part, panel) {
 /** Ends of the scale of shaded points. @param {Part} part @returns {number[]} */
 export const ownEnds = (part) => part.scale_ends ?? extent(part.shades);
 
-/** Points and ends of bars of a panel by x, each with its part and number. @param {Panel} panel @returns {{part: Part, at: number, x: number, y: number}[]} */
+/** Points and ends of bars of a panel by x, each with its part and number; faint ones only where there are no others. @param {Panel} panel @returns {{part: Part, at: number, x: number, y: number}[]} */
 export function pointsOf(panel) {
-  const shown = panel.parts.filter((part) => part.kind === 'points' || part.kind === 'bars').map((part) => {
+  const known = panel.parts.filter((part) => part.kind === 'points' || part.kind === 'bars');
+  const shown = (known.every((part) => part.is_faint) ? known : known.filter((part) => !part.is_faint)).map((part) => {
     if (part.kind === 'points') return part;
     const [x, y] = placed(part.along, part.lengths, part.places);
     return {...part, x, y, texts: []};
@@ -246,15 +252,10 @@ function onCurve(x, values, at, isStepped) {
 
 const ascends = (x) => x.every((value, at) => !at || value === null || x[at - 1] === null || value >= x[at - 1]);
 
-/**
- * What is said of a place of a panel in pixels: of the nearest point, else of the values there.
- * @param {Panel} panel @param {object} map @param {number} left @param {number} top @param {number} scale @returns {string[]}
- */
-export function readAt(panel, map, left, top, scale) {
-  const near = pointsOf(panel).map((point) => [Math.hypot(map.x.to(point.x) - left, map.y.to(point.y) - top), point])
-    .filter(([distance]) => distance < NEAR * scale).sort(([one], [other]) => one - other)[0];
-  return near ? pointText(panel, near[1]) : valuesAt(panel, map.x.back(left), map.y.back(top));
-}
+/** The point of a panel that is nearest to a place in pixels; undefined where none is near. @param {Panel} panel @param {object} map @param {number} left @param {number} top @param {number} scale */
+export const nearPoint = (panel, map, left, top, scale) => pointsOf(panel)
+  .map((point) => [Math.hypot(map.x.to(point.x) - left, map.y.to(point.y) - top), point])
+  .filter(([distance]) => distance < NEAR * scale).sort(([one], [other]) => one - other)[0]?.[1];
 
 /** Values of the parts of a panel at a place of its axes. @param {Panel} panel @param {number} x @param {number} y @returns {string[]} */
 export function valuesAt(panel, x, y) {

@@ -1,7 +1,7 @@
 /** One panel of a chart: axes by uPlot, parts by `drawParts`; reading by pointer and keys, picking, a rule to drag. */
 import {html, useEffect, useLayoutEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import uPlot from '../vendor/uplot-1.6.32.js';
-import {drawParts, mapping, pointsOf, pointText, readAt, valuesAt} from './chart-draw.js';
+import {drawParts, mapping, nearPoint, pointsOf, pointText, valuesAt} from './chart-draw.js';
 import {along, fieldOf, flat, tickTexts, ticksOf, withUnit} from './chart-scale.js';
 
 const FONT = '11.5px system-ui, sans-serif';
@@ -65,11 +65,13 @@ const stepped = (axis, ends, value, share) => valueAt(axis, ends, along(axis, en
 
 /**
  * @param {{panel: Object, place: number, ranges: {x: number[], y: number[]}, behind: Object[], width: number, height: number,
- *   hasXText: boolean, theme: Object, drag?: Object, onPick?: Function, say: (text: string) => void}} props
+ *   hasXText: boolean, theme: Object, drag?: Object, over?: (panel: Object, ranges: Object) => any, onPick?: Function, picks?: string,
+ *   onRead?: (point: Object|null) => void, ringed?: {x: number, y: number}, say: (text: string) => void}} props `over` gives what lies over the
+ *   area between the axes, `onRead` is told the point that is read, null where none is
  */
 export function ChartPanel(props) {
-  const {panel, place, behind, width, height, hasXText, theme, drag, onPick, say} = props;
-  const [host, handle, plot] = [useRef(null), useRef(null), useRef(null)];
+  const {panel, place, behind, width, height, hasXText, theme, drag, over, onPick, picks = 'sets the rig', onRead, ringed, say} = props;
+  const [host, handle, veil, plot] = [useRef(null), useRef(null), useRef(null), useRef(null)];
   const latest = useRef(null);
   const [tip, setTip] = useState(null);
   const [held, setHeld] = useState(null);
@@ -81,9 +83,10 @@ export function ChartPanel(props) {
   latest.current = {
     ...props, ranges, draw: (u) => {
       const map = mapOf(u);
-      drawParts(u.ctx, panel, {map, theme, scale: devicePixelRatio, behind, rule, held});
-      if (!handle.current || !rule) return;
+      drawParts(u.ctx, panel, {map, theme, scale: devicePixelRatio, behind, rule, held, ringed});
       const [left, top, length, high] = [map.box.left, map.box.top, map.box.width, map.box.height].map((each) => each / devicePixelRatio);
+      if (veil.current) Object.assign(veil.current.style, {left: `${left}px`, top: `${top}px`, width: `${length}px`, height: `${high}px`});
+      if (!handle.current || !rule) return;
       Object.assign(handle.current.style, {left: `${left - THUMB / 2}px`, top: `${top}px`, width: `${length + THUMB}px`, height: `${high}px`});
     },
   };
@@ -101,7 +104,7 @@ export function ChartPanel(props) {
     if (u.width !== width || u.height !== height) u.setSize({width, height});
     u.setData([ranges.x, ranges.y]);
   }, [panel, ranges, behind, width, height, theme]);
-  useLayoutEffect(() => plot.current.redraw(false), [held]);
+  useLayoutEffect(() => plot.current.redraw(false), [held, ringed?.x, ringed?.y]);
   useEffect(() => {
     if (!grabbed.current) setHeld(null);
     setTip((old) => (old?.isKept ? old : null));
@@ -121,13 +124,16 @@ export function ChartPanel(props) {
   };
   const hide = () => {
     setTip(null);
+    onRead?.(null);
     plot.current?.setCursor({left: -10, top: -10}, false);
   };
   const hover = (event) => {
     const {map, left, top, isIn, x, y} = placeOf(event);
     if (!isIn) return hide();
     at.current = {x, y, number: at.current?.number ?? -1};
-    return showTip(map, left, top, readAt(panel, map, left, top, devicePixelRatio));
+    const near = nearPoint(panel, map, left, top, devicePixelRatio);
+    onRead?.(near ?? null);
+    return showTip(map, left, top, near ? pointText(panel, near) : valuesAt(panel, x, y));
   };
   const pick = (event) => {
     const start = pressed.current;
@@ -144,6 +150,7 @@ export function ChartPanel(props) {
     const step = (name, share) => [{...now, [name]: stepped(panel[name], ranges[name], now[name], share)}];
     const toPoint = (by) => {
       const number = (now.number + by + points.length) % points.length;
+      onRead?.(points[number]);
       return [{x: points[number].x, y: points[number].y, number}, pointText(panel, points[number])];
     };
     const isByPoint = points.length > 0 && !fieldOf(panel);
@@ -176,13 +183,14 @@ export function ChartPanel(props) {
   };
 
   const value = rule && (held ?? rule.value);
-  const hint = `Arrow keys read values${pointsOf(panel).length ? ', up and down the points' : ''}${onPick ? ', Enter sets the rig' : ''}.`;
+  const hint = `Arrow keys read values${pointsOf(panel).length ? ', up and down the points' : ''}${onPick ? `, Enter ${picks}` : ''}.`;
   return html`<div class="chart-frame">
     <div ref=${host} class=${`chart-plot${onPick ? ' is-pickable' : ''}`} role="img" tabindex="0" data-test=${`plot:${place}`}
       aria-label=${`${panelName(panel)}. ${hint}`} onPointerMove=${hover} onPointerLeave=${hide} onKeyDown=${press} onBlur=${hide}
       onPointerDown=${(event) => { pressed.current = [event.clientX, event.clientY]; hover(event); }} onClick=${pick}></div>
     ${rule && html`<input ref=${handle} type="range" class="chart-handle" min="0" max=${RULE_STEPS} value=${Math.round(RULE_STEPS * along(panel.x, ranges.x).to(value))} aria-valuetext=${withUnit(value, panel.x)}
       aria-label=${`${rule.label || 'Value'}, ${flat(panel.x.label)}`} data-test=${`drag:${place}`} onInput=${move} onChange=${release} onPointerDown=${hide} />`}
+    ${over && html`<div ref=${veil} class="chart-over">${over(panel, ranges)}</div>`}
     ${tip && html`<div class=${`chart-tip${tip.left > width / 2 ? ' is-left' : ''}${tip.top > height / 2 ? ' is-above' : ''}`}
       style=${{left: `${tip.left}px`, top: `${tip.top}px`, maxWidth: `${Math.max(150, Math.max(tip.left, width - tip.left) - 16)}px`}}
       aria-hidden="true" data-test="tip">

@@ -1,6 +1,6 @@
 /** Long tasks as jobs: found again by what was asked, started, followed, stopped. */
 import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
-import {ask, useConnection} from './api.js';
+import {ask, cancelRequest, useConnection} from './api.js';
 import {Button, capital, Warning} from './parts.js';
 /** @typedef {{id: string, task: string, label: string, state: string, created: number, seconds: number, reason?: string,
  * done?: number, total?: number, stage?: string}} Job */
@@ -91,3 +91,17 @@ export function JobState({job, cancel}) {
 
 /** @param {{job: Job}} properties */
 export const JobProgress = ({job}) => html`<progress ...${job.total && {max: job.total, value: job.done}} aria-label="Progress" />`;
+
+/** Seconds that something already takes, shown after the first with what stops it. @param {{isWaiting: boolean}} properties */
+export function Waiting({isWaiting}) {
+  const [seconds, setSeconds] = useState(0);
+  useEffect(() => {
+    setSeconds(0);
+    if (!isWaiting) return undefined;
+    const timer = setInterval(() => setSeconds((old) => old + 1), 1000);
+    return () => clearInterval(timer);
+  }, [isWaiting]);
+  return html`<span class="status" role="status" data-test="status">${isWaiting && html`Computing…${seconds > 0 && html` ${seconds} s
+    <progress aria-label="Computing" />`}`}</span>
+    ${isWaiting && seconds > 0 && html`<${Button} onClick=${cancelRequest} data-test="cancel-study">Cancel<//>`}`;
+}

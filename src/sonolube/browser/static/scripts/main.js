@@ -1,7 +1,7 @@
 /** Shell of the workbench: head with pages, undo, take away and theme; below it the page of the state. */
 import {html, render, useEffect, useErrorBoundary, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {ask, enter, useConnection} from './api.js';
-import {Button, capital, Loading, Refusal, Select, Sheet, useEvents, Warning} from './parts.js';
+import {Button, capital, Loading, Refusal, Select, Sheet, useEvents, useInView, Warning} from './parts.js';
 import {addressAsLeft, addressOf, followAddress, PAGES, redo, stored, undo, useApp} from './state.js';
 import {TakeAway} from './take-away.js';
 
@@ -37,13 +37,9 @@ const ThemeSwitch = () => html`<label class="theme"><span class="hidden">Theme</
 
 function Head() {
   const {state, canUndo, canRedo} = useApp();
-  const links = useRef(null);
+  const links = useInView(state.page);
   useEvents(['keydown'], onKey);
   useEvents(['dragover', 'drop'], stay);
-  useEffect(() => {
-    const here = links.current.querySelector('[aria-current]'); // in view where there is no room for all
-    links.current.scrollLeft = here.offsetLeft - (links.current.clientWidth - here.offsetWidth) / 2;
-  }, [state.page]);
   return html`<header class="head">
     <a class="skip" href="#answer" onClick=${skip}>Skip to the answer</a>
     <a class="name" href=${addressOf('predict')} data-test="home">sonolube</a>

@@ -15,8 +15,8 @@ export const PAGES = {
 const STEPS = 100; // of undo
 const LONGEST_TEXT = 8192; // characters of a compressed rig file that a link holds
 const KEPT_PREFIX = 'kept-';
-const WITH_RIG = ['predict', 'explore']; // pages that share some entries of their views
-const SHARED = ['runs', 'pin', 'disc', 'lubricant'];
+const WITH_RIG = ['predict', 'explore', 'design']; // pages that share some entries of their views
+const SHARED = ['runs', 'pin', 'disc', 'lubricant', 'lost'];
 
 /** @type {State} */
 let state = {page: 'predict', rig: {name: '', changes: {}}, view: {}};

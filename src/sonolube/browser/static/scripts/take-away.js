@@ -20,9 +20,10 @@ export function offer(task, args) {
   };
 }
 
-/** Save a text as a file. @param {{name: string, kind: string, text: string}} file */
-export function save({name, kind, text}) {
-  const address = URL.createObjectURL(new Blob([text], {type: kind}));
+/** Save a file that the workbench has sent. @param {{name: string, kind: string, text?: string, base64?: string}} file */
+export function save({name, kind, text, base64}) {
+  const content = base64 === undefined ? text : Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+  const address = URL.createObjectURL(new Blob([content], {type: kind}));
   const link = document.createElement('a');
   link.href = address;
   link.download = name;

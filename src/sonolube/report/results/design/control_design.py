@@ -9,6 +9,7 @@ from sonolube.design.control import (
     ControlDesign,
     ControlEnergy,
     ControlSettings,
+    DisturbanceRejection,
     StickSlipMotion,
     capture_limit,
     stick_slip as holder,
@@ -19,7 +20,7 @@ from sonolube.report.page import PageTable
 from sonolube.report.results.record_object import amplitude_object, picked
 from sonolube.rig import AMPLITUDE, Rig, operating_caveats
 from sonolube.text.units import format_si
-from sonolube.vocabulary import si
+from sonolube.vocabulary import quantity, si
 
 _MIN_GAIN_MARGIN = 1.7  # lower limit of textbooks
 _NO_VOLTAGE = (
@@ -30,11 +31,20 @@ _TABLE_ROWS = 12  # of the lookup table on the page
 
 _ENERGIES = ("amplifier_energy", "electrical_energy")  # of a voltage alone
 
+_SUMMARY = (
+    *("gain_margin", "phase_margin", "delay_margin", "sensitivity_peak"),
+    *("rise_time", "settling_time", "overshoot", "peak_deviation", "recovery_time"),
+)
+
 _MAXIMA = {"voltage": "voltage_maximum", "amplitude": "amplitude_maximum"}
 
 
 def control_object(
-    rig: Rig, settings: ControlSettings, study: ControlDesign, suppression: StickSlipSuppression | None
+    rig: Rig,
+    settings: ControlSettings,
+    study: ControlDesign,
+    rejection: DisturbanceRejection,
+    suppression: StickSlipSuppression | None,
 ) -> dict[str, Any]:
     """Controller, margins, step response, energy and stick-slip, for JSON."""
     process = study.controller.process
@@ -48,6 +58,7 @@ def control_object(
         **picked(study.controller.gains, "proportional_gain", "integral_time"),
         **picked(study.margins, "gain_margin", "phase_margin", "delay_margin", "sensitivity_peak"),
         **picked(study.response, "rise_time", "settling_time", "overshoot", "tracking_error"),
+        **picked(rejection, "peak_deviation", "recovery_time"),
         **picked(study.energy, *_ENERGIES, "saved_work"),
     }
     if study.run.electrical_energy is None:
@@ -59,6 +70,10 @@ def control_object(
         "feed_forward": settings.feed_forward,
         "limit": study.limit,
         **si(values),
+        "summary": [
+            {"label": quantity(name).meaning, "text": "never" if values[name] is None else _text(name, values[name])}
+            for name in _SUMMARY
+        ],
     }
     if suppression is None:
         return content
@@ -75,9 +90,12 @@ def control_object(
 
 
 def facts(
-    settings: ControlSettings, study: ControlDesign, suppression: StickSlipSuppression | None
+    settings: ControlSettings,
+    study: ControlDesign,
+    rejection: DisturbanceRejection,
+    suppression: StickSlipSuppression | None,
 ) -> list[tuple[str, str]]:
-    """Target, drive, process, controller, margins, step response, energy, resonance and stick-slip."""
+    """Target, drive, process, controller, margins, responses, energy, resonance and stick-slip."""
     process, gains = study.controller.process, study.controller.gains
     margins, response = study.margins, study.response
     late = process.dead_time_samples * process.sample_interval
@@ -94,6 +112,7 @@ def facts(
         f"Ms {margins.sensitivity_peak:.2f}",
         "step": f"rise {_time(response.rise_time)}, within 5 % after {_time(response.settling_time)}, "
         f"overshoot {100 * response.overshoot:.2g} %",
+        "disturbance": _rejection_text(rejection),
         "tracking error": f"{format_si(response.tracking_error, 'N', scale=study.friction_force)} rms once settled",
         "energy": _energy_text(study.energy),
     }
@@ -150,6 +169,19 @@ def lookup_table(study: ControlDesign) -> PageTable:
         heads=(f"{quantity.word}, {quantity.qualifier}", "friction"),
         rows=tuple((format_si(float(level), quantity.unit), format_si(float(force), "N")) for level, force in rows),
     )
+
+
+def _text(name: str, value: float) -> str:
+    """Value of a quantity with its unit, an overshoot in percent."""
+    return f"{100 * value:.2g} %" if name == "overshoot" else format_si(value, quantity(name).unit)
+
+
+def _rejection_text(rejection: DisturbanceRejection) -> str:
+    """Step of the real friction, largest deviation and recovery."""
+    step = f"{100 * abs(rejection.friction_step):.3g} % {'more' if rejection.friction_step > 0 else 'less'} friction"
+    back = rejection.recovery_time
+    again = "not back" if back is None else f"back within 5 % of that after {format_si(back, 's')}"
+    return f"{step}: at most {format_si(rejection.peak_deviation, 'N')} off the target, {again}"
 
 
 def _resonance_text(study: ControlDesign) -> str:

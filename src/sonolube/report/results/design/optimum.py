@@ -1,10 +1,20 @@
 """Optimum of a design: facts, table of designs, caveats, and the object for JSON."""
 
+from collections.abc import Mapping
 from dataclasses import asdict
 from math import log
 from typing import Any, Final
 
-from sonolube.design.optimisation import OWN_ACTUATOR, DesignPoint, DriveElectronics, MatchedNetwork, Optimum, Tolerance
+from sonolube.design.optimisation import (
+    OBJECTIVES,
+    OWN_ACTUATOR,
+    DesignPoint,
+    DriveElectronics,
+    MatchedNetwork,
+    Optimum,
+    Tolerance,
+)
+from sonolube.design.optimisation.design_output import design_changes
 from sonolube.design.optimisation.evaluation import LIMITS
 from sonolube.models.actuator import MatchingNetwork
 from sonolube.text.units import format_si
@@ -95,16 +105,21 @@ def optimum_caveats(optimum: Optimum) -> list[str]:
     return caveats
 
 
-def optimum_object(optimum: Optimum, electric: DriveElectronics) -> dict[str, Any]:
-    """Best designs, front, number of designs, amplifier and networks."""
+def optimum_object(optimum: Optimum, electric: DriveElectronics, *, content: Mapping[str, Any]) -> dict[str, Any]:
+    """Best designs, front, number of designs, amplifier and networks; `content` is that of the file of the rig."""
+
+    def design(point: DesignPoint) -> dict[str, Any]:
+        return _design_object(point) | {"changes": design_changes(content, optimum.problem, point)}
+
     screened, rig = optimum.screening, optimum.problem.space.rig
     return {
         "rig": rig.title,
         "friction_model": rig.friction_model.name,
         "minimise": optimum.minimise,
+        "pareto": optimum.second_objective,
         **si({"friction_ratio": optimum.problem.friction_ratio}),
-        "designs": [_design_object(point) for point in optimum.designs],
-        "front": [_design_object(point) for point in optimum.front],
+        "designs": [design(point) for point in optimum.designs],
+        "front": [design(point) for point in optimum.front],
         "screened": int(screened.frequency.size),
         "feasible": int(screened.feasible.sum()),
         "amplifier": si(asdict(electric.amplifier)),
@@ -161,7 +176,7 @@ def _elements(network: MatchingNetwork) -> dict[str, float]:
 
 
 def _design_object(point: DesignPoint) -> dict[str, Any]:
-    """Design for JSON: candidate, drive, quantities and fractions of the limits."""
+    """Design for JSON: candidate, drive, quantities, objectives in SI and fractions of the limits."""
     numbers = point.evaluation.quantities
     return {
         "actuator": point.candidate.actuator,
@@ -169,6 +184,7 @@ def _design_object(point: DesignPoint) -> dict[str, Any]:
         **si({"frequency": point.frequency, "voltage_peak_to_peak": point.voltage_peak_to_peak}),
         **si(dict(point.candidate.entries)),
         **si({name: float(numbers[name][0]) for name in _DESIGN_QUANTITIES if name in numbers}),
+        "objectives": {name: point.objective(name) for name in OBJECTIVES},
         "limits_used": {name: float(point.evaluation.utilisation[name][0]) for name in LIMITS},
     }
 

@@ -1,12 +1,12 @@
 /** Page Explore: a study of the rig over one or two quantities; a click in its figure sets the rig. */
 import {html, useEffect, useMemo, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {Blocks, Caveats, Failure, RefusedNote} from '../answer.js';
-import {cancelRequest, taskPath, useReply} from '../api.js';
+import {taskPath, useReply} from '../api.js';
 import {Chart} from '../chart.js';
 import {fieldOf as drawnField} from '../chart-scale.js';
 import {Labelled, MaterialChoices, refusedBy, RunsChoice, TextField, typed, uploadOf, useFile} from '../fields.js';
-import {isActive, JobState, useJob} from '../job.js';
-import {Button, capital, Card, Refusal, Select} from '../parts.js';
+import {isActive, JobState, useJob, Waiting} from '../job.js';
+import {Button, capital, Card, Refusal, Select, useInView} from '../parts.js';
 import {useRig, Workspace} from '../rig-panel.js';
 import {change, present, settle, useApp} from '../state.js';
 import {offer} from '../take-away.js';
@@ -111,7 +111,7 @@ function withPoint(chart, fields) {
 }
 
 /** Choice among names, each with its title, as a row of buttons. */
-const Choices = ({group, legend, titles, chosen, choose}) => html`<fieldset class="choices"><legend>${legend}</legend>
+export const Choices = ({group, legend, titles, chosen, choose}) => html`<fieldset class="choices" ref=${useInView(chosen)}><legend>${legend}</legend>
   ${titles.map(([name, title]) => html`<label key=${name} class="choice"><input type="radio" name=${group} checked=${name === chosen}
     onChange=${() => choose({[group]: name})} data-test=${`${group}:${name}`} /><span>${title}</span></label>`)}</fieldset>`;
 
@@ -139,20 +139,6 @@ function StudyTexts({study, view, faults, over}) {
         ...${refusedBy(`study-${entry}`, faultOf(argument))} /><//>`)}
     ${study.hasBodies && html`<${MaterialChoices} view=${view} faultOf=${faultOf} />`}
   </div>`;
-}
-
-/** Seconds that something already takes, shown after the first with what stops it. */
-function Waiting({isWaiting}) {
-  const [seconds, setSeconds] = useState(0);
-  useEffect(() => {
-    setSeconds(0);
-    if (!isWaiting) return undefined;
-    const timer = setInterval(() => setSeconds((old) => old + 1), 1000);
-    return () => clearInterval(timer);
-  }, [isWaiting]);
-  return html`<span class="status" role="status" data-test="status">${isWaiting && html`Computing…${seconds > 0 && html` ${seconds} s
-    <progress aria-label="Computing" />`}`}</span>
-    ${isWaiting && seconds > 0 && html`<${Button} onClick=${cancelRequest} data-test="cancel-study">Cancel<//>`}`;
 }
 
 /** Answer of a study: at once, or as a job where it takes long; while the rig moves, that of the last rest. */

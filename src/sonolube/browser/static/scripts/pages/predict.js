@@ -6,7 +6,7 @@ import {Chart} from '../chart.js';
 import {focusField, MaterialChoices, RunsChoice, typed, uploadOf, useFile} from '../fields.js';
 import {Button, capital, Card, classes, Refusal} from '../parts.js';
 import {useRig, Workspace} from '../rig-panel.js';
-import {change, decode, encode, present, setEntry, useApp} from '../state.js';
+import {addressOf, change, decode, encode, present, setEntry, useApp} from '../state.js';
 import {offer} from '../take-away.js';
 
 const MOVING_DRAWS = 1000;
@@ -54,7 +54,7 @@ function Numbers({answer}) {
 }
 
 /** What would narrow the interval, most first; a click opens what it is about. */
-function Sharpen({answer}) {
+function Sharpen({answer, beside}) {
   const tables = answer.blocks.filter(isTable);
   const {heads: [what, left], rows} = tables.find(({heads}) => heads[0] === MEASURES_HEAD) ?? {heads: [], rows: []};
   if (!rows.length) return null;
@@ -67,7 +67,8 @@ function Sharpen({answer}) {
         <meter min="0" max="100" value=${parseFloat(share)} aria-label=${`${left}: ${share}`}></meter>
         ${share}</span><//></li>`;
   })}</ul>
-    <p class="hint">${capital(what)}, and what each ${left}.</p>
+    <p class="hint">${capital(what)}, and what each ${left}. <a href=${addressOf('design', present({part: 'plan', ...beside}))}
+      data-test="plan-tests">Plan these tests</a></p>
     <details><summary>Least known inputs</summary><${TextTable} ...${tables.at(-1)} kind="table-frame" />
       ${answer.answer.stiffness_probes?.map((line) => html`<p key=${line} class="hint">${line}</p>`)}</details>
   <//>`;
@@ -160,6 +161,7 @@ export default function Predict() {
   const {state, isMoving} = useApp();
   const {view} = useRig();
   const [note, onFile] = useFile('runs');
+  const {pin, disc, runs} = state.view;
   const body = argumentsOf(state, isMoving);
   const reply = useReply('predict', state.rig.name ? `api/tasks/predict${isMoving ? '?tables=no' : ''}` : null, body);
   const {content, failure, refused, isWaiting} = reply;
@@ -193,7 +195,7 @@ export default function Predict() {
       </section>
       <${Kept} kept=${kept} now=${content} onRemove=${remove} />
       <div class="columns">
-        <div class="stack"><${Sharpen} answer=${content} />${ownRuns}</div>
+        <div class="stack"><${Sharpen} answer=${content} beside=${{pin, disc, runs}} />${ownRuns}</div>
         <div class="stack">
           <${Card} id="more-title" title="In words">
             ${[rest, ...others].filter(Boolean).map((line) => html`<p key=${line}>${line}</p>`)}
