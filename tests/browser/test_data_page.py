@@ -1,4 +1,4 @@
-"""The page Data: a tribologist with recordings goes from the files to a prediction with own runs, by mouse and by keyboard."""
+"""The page Data: from recordings to a prediction with own runs, by mouse and by keyboard."""
 
 import json
 import re

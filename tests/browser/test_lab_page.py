@@ -1,4 +1,4 @@
-"""Page Lab: a protocol edited along time, run on the virtual tribometer, watched, stopped from each side, and fitted."""
+"""Page Lab: a protocol edited along time, run on the virtual tribometer, watched, stopped, and fitted."""
 
 import os
 import signal

