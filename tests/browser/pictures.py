@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from PIL import Image
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, Page, expect
 from tests.browser.pages import LOAD, VOLTS, at_rest, opened, show, started_browser
 from tests.browser.workbench import Served, served
 
@@ -32,6 +32,7 @@ def every_picture() -> Shots:
                 yield f"predict-{name}", page.screenshot()
         with opened(browser, workbench) as page:
             yield from _pages(page, workbench)
+            yield from laboratory(page, workbench)
         yield from _without_an_answer(browser, workbench)
 
 
@@ -61,6 +62,24 @@ def _pages(page: Page, workbench: Served) -> Shots:
     page.get_by_test_id("use-rig").wait_for()
     at_rest(page)
     yield "new", page.screenshot()
+
+
+def laboratory(page: Page, workbench: Served) -> Shots:
+    """The page Lab with a protocol along time, and with a run at its voltages."""
+    show(page, workbench, "tribometer", {}, where="lab")
+    page.get_by_test_id("step:7").click()
+    page.get_by_test_id("plan").evaluate("plan => plan.scrollIntoView()")
+    yield "lab-plan", page.screenshot()
+    page.get_by_test_id("start").click()
+    for text in ("Wipe pin and plate", "Hang the weight"):
+        expect(page.get_by_test_id("prompt")).to_contain_text(text)
+        page.get_by_test_id("confirm").click()
+    expect(page.get_by_test_id("run-step")).to_contain_text("step 7")
+    expect(page.get_by_test_id("run-time")).to_contain_text("21 s of")
+    page.get_by_test_id("run").evaluate("run => run.scrollIntoView()")
+    yield "lab", page.screenshot()
+    page.get_by_test_id("stop").click()
+    expect(page.get_by_test_id("stop")).to_be_hidden()
 
 
 def _without_an_answer(browser: Browser, workbench: Served) -> Shots:

@@ -63,7 +63,7 @@ function endsOf(lows, highs, before) {
   if (!lows.length) return before ?? [0, 1];
   const [low, high] = [Math.min(...lows), Math.max(...highs)];
   const room = (high - low || Math.abs(high) || 1) * MARGIN;
-  return before?.[0] <= low && before[1] >= high && before[1] - before[0] < 4 * (high - low + room) ? before : [low - room, high + room];
+  return before?.[0] <= low && before[1] >= high && before[1] - before[0] < 2.5 * (high - low + room) ? before : [low - room, high + room];
 }
 
 /** Channels that have slices, a panel each; with reduced motion they fill page by page rather than move. @param {{channels: {name: string, label: string, unit: string}[], kept: Map<string, Slice[]>, time: number}} properties */
@@ -117,8 +117,8 @@ export function RunCard({run, devices, isHolder, ask}) {
     ${now.outcome && now.reason && html`<p data-test="run-reason">Ended: ${now.reason}</p>`}
     ${now.trips?.length > 0 && html`<${Warning}>${now.trips.map((trip) => html`<p key=${trip}>${trip}</p>`)}<//>`}
     ${now.prompt && isAtWork(now) && html`<${Prompt} prompt=${now.prompt} confirm=${isHolder && confirm} />`}
-    <${Strips} channels=${devices.channels} kept=${kept} time=${now.time ?? 0} />
     ${isAtWork(now) && frame?.limits?.length > 0 && html`<h3>How near the limits are</h3><ul class="limits" data-test="limits">${frame.limits.map((each) => html`<${Limit} key=${each.label} ...${each} />`)}</ul>`}
+    <${Strips} channels=${devices.channels} kept=${kept} time=${now.time ?? 0} />
     <p class="hint">${now.is_virtual ? `Virtual rig ${now.rig}, seed ${now.seed}` : devices.title}${now.folder && `; recorded in ${now.folder}`}</p>
   <//>`;
 }

@@ -23,7 +23,7 @@ function endOf(steps, at) {
 }
 
 /** What stands on a block: its entries, or its kind. */
-const textOf = ({label, fields}) => fields.map(({text}) => text).filter(Boolean).join(', ') || label;
+const textOf = ({label, fields}) => fields.filter(({kind, text}) => text && kind !== 'flag').map(({text}) => text).join(', ') || label;
 
 /** Number of the step so many further in its list of steps. */
 const beside = (number, by) => [...number.split('.').slice(0, -1), Number(number.split('.').at(-1)) + by].join('.');
