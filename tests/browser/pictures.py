@@ -7,11 +7,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from PIL import Image
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, Page, expect
 from tests.browser.pages import LOAD, VOLTS, at_rest, opened, show, started_browser
 from tests.browser.recordings import write_recordings
 from tests.browser.scans import write_groove
-from tests.browser.test_lab_page import SHORT, begin
 from tests.browser.workbench import Served, served
 
 NEW = {"pin": "steel", "disc": "steel", "load": "5 N", "speed": "0.1 m/s", "frequency": "22 kHz", "amplitude": "2 um"}
@@ -38,7 +37,7 @@ def every_picture() -> Shots:
             yield from _scan(page, workbench, Path(folder))
             yield from _data(page, workbench, Path(folder))
             yield from _modes(page, workbench)
-            yield from laboratory(page, workbench, Path(folder))
+            yield from laboratory(page, workbench)
         yield from _without_an_answer(browser, workbench)
 
 
@@ -120,21 +119,27 @@ def _modes(page: Page, workbench: Served) -> Shots:
     yield "modes", page.screenshot(full_page=True, clip={"x": 0, "y": 0, "width": 1280, "height": 960})
 
 
-def laboratory(page: Page, workbench: Served, folder: Path) -> Shots:
-    """The page Lab with a run at work, and the page of the run itself."""
-    (folder / "short.toml").write_text(SHORT, encoding="utf-8")
+def laboratory(page: Page, workbench: Served) -> Shots:
+    """The page Lab with a protocol along time, with a run at its voltages, and the page of the run itself."""
     show(page, workbench, "tribometer", {}, where="lab")
-    begin(page, folder / "short.toml")
-    page.get_by_test_id("confirm").click()
-    page.get_by_text("step 6").first.wait_for()
-    page.evaluate("scrollTo(0, 0)")
+    page.get_by_test_id("step:7").click()
+    page.get_by_test_id("plan").evaluate("plan => plan.scrollIntoView()")
+    yield "lab-plan", page.screenshot()
+    page.get_by_test_id("start").click()
+    for text in ("Wipe pin and plate", "Hang the weight"):
+        expect(page.get_by_test_id("prompt")).to_contain_text(text)
+        page.get_by_test_id("confirm").click()
+    expect(page.get_by_test_id("run-step")).to_contain_text("step 7")
+    expect(page.get_by_test_id("run-time")).to_contain_text("21 s of")
+    page.get_by_test_id("run").evaluate("run => run.scrollIntoView()")
     yield "lab", page.screenshot()
-    link = page.get_by_role("link", name="Stop page").first.get_attribute("href")
+    link = page.get_by_test_id("stop-page").get_attribute("href")
     own = page.context.browser.new_page(viewport={"width": 640, "height": 620})  # type: ignore[union-attr]
     own.goto(str(link))
     yield "stop", own.screenshot()
-    own.get_by_role("button", name="Stop").click()
     own.close()
+    page.get_by_test_id("stop").click()
+    expect(page.get_by_test_id("stop")).to_be_hidden()
 
 
 def _without_an_answer(browser: Browser, workbench: Served) -> Shots:
