@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.sync_api import Page, expect
-from tests.browser.pages import LOAD, RIGS, at_rest, show
+from playwright.sync_api import Browser, Page, expect
+from tests.browser.pages import LOAD, RIGS, at_rest, opened, show
+from tests.browser.test_pages import faults_of_access
 from tests.browser.walks import HANDS, Mouse
 from tests.browser.workbench import Served
 from tests.chromium import CHROMIUM
@@ -137,7 +138,7 @@ def test_a_plan_is_reached_from_what_would_sharpen_a_prediction(
 
 
 REFUSED = (
-    ("control", "control.rate", "-1", "control-rate-refusal"),
+    ("control", "control.rate", "-1 Hz", "control-rate-refusal"),
     ("control", "control.friction", "5N", ""),
     ("plan", "plan.points", "many", "plan-points-refusal"),
     ("plan", "plan.speed", "3 kg", "plan-speed-refusal"),
@@ -172,3 +173,14 @@ def test_a_study_that_a_rig_has_not_is_said_in_one_line(
     if part == "designs":
         page.get_by_test_id("start-job").click()
     expect(page.get_by_test_id("refused")).to_contain_text(said)
+
+
+def test_no_part_has_a_fault_of_access_or_scrolls_sideways_on_a_phone(browser: Browser, workbench: Served) -> None:
+    phone: dict[str, Any] = {"viewport": {"width": 320, "height": 640}, "color_scheme": "dark", "bypass_csp": True}
+    with opened(browser, workbench, **phone, reduced_motion="reduce") as page:
+        for part in ("plan", "control"):
+            page.goto(f"{workbench.address}#/design?rig=tribometer&part={part}")
+            page.get_by_test_id(part).wait_for()
+            at_rest(page)
+            assert faults_of_access(page) == [], part
+            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), part

@@ -11,7 +11,7 @@ from tests.browser.pictures import NEW
 from tests.browser.workbench import Served
 from tests.chromium import CHROMIUM
 
-PAGES = ("predict", "explore", "dissertation", "jobs", "new")
+PAGES = ("predict", "explore", "design", "dissertation", "jobs", "new")
 PHONE: dict[str, Any] = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
 
 pytestmark = [

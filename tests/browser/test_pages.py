@@ -117,7 +117,7 @@ def test_no_page_has_a_fault_of_access_or_scrolls_sideways(
     width, height = SIZES[size]
     shown: dict[str, Any] = {"viewport": {"width": width, "height": height}, "color_scheme": scheme}
     with opened(browser, workbench, **shown, bypass_csp=True, reduced_motion="reduce") as page:
-        for where in ("predict", "explore", "jobs", "new"):
+        for where in ("predict", "explore", "design", "jobs", "new"):
             show(page, workbench, "tribometer", {}, where=where)
             assert faults_of_access(page) == [], where
             widths = page.evaluate("[document.documentElement.scrollWidth, innerWidth]")
