@@ -6,6 +6,7 @@ CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shuti
 FLAGS = [
     "--no-sandbox",
     "--disable-gpu",
+    "--enable-unsafe-swiftshader",  # WebGL without a graphics card; of own pages alone
     "--disable-background-networking",
     "--disable-component-update",
     "--disable-sync",

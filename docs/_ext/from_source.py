@@ -19,6 +19,7 @@ from itertools import chain, groupby
 from pathlib import Path
 from typing import Any, ClassVar
 
+import numpy as np
 from docutils import nodes
 from docutils.parsers.rst import directives
 from sphinx.application import Sphinx
@@ -49,8 +50,10 @@ from sonolube.models.friction import FRICTION_MODELS
 from sonolube.models.surfaces import surface_finish, surface_finish_names
 from sonolube.models.wear import WEAR_MODELS
 from sonolube.prediction import Calibration, calibrations
-from sonolube.prediction.figures import blind_caption
-from sonolube.prediction.hierarchy import PROBABILITIES
+from sonolube.prediction.calibration import plane_calibration
+from sonolube.prediction.figures import blind_caption, plane_caption
+from sonolube.prediction.hierarchy import PROBABILITIES, central_interval
+from sonolube.prediction.within_plane import COULOMB, PlaneConditions, plane_rigs
 from sonolube.rig import Rig, available_sources, read_rig, rig_schema
 from sonolube.rig.file.toml_file import tables_of
 from sonolube.text.units import format_si, unit_description
@@ -277,6 +280,24 @@ def blind_headline() -> str:
     return blind_caption()
 
 
+def blind_plane() -> str:
+    """Each published point within the plane with Coulomb's law and the prediction by the other points."""
+    rows = []
+    for rig, one in zip(plane_rigs(), plane_calibration().predictions, strict=True):
+        ends = [central_interval(one.draws, probability) for probability in PROBABILITIES]
+        assert isinstance(rig.at.conditions, PlaneConditions)
+        zeta, law = rig.at.conditions.velocity_ratio[0], COULOMB.ratio(0.0, rig.at.conditions)[0]
+        numbers = [f"{zeta:.2g}", f"{one.friction_ratio:.2f}", f"{law:.2f}", f"{np.median(one.draws):.2f}"]
+        rows.append([rig.name, *numbers, *(f"{low:.2f} to {high:.2f}" for low, high in ends)])
+    intervals = [f"{100 * each:.0f} %" for each in PROBABILITIES]
+    return _grid(["Point", "v_r/(omega a)", "Measured", "Coulomb's law", "Median", *intervals], rows)
+
+
+def blind_plane_headline() -> str:
+    """How far predictions within the plane were tested, in words."""
+    return plane_caption()
+
+
 TABLES: Mapping[str, Callable[[], str]] = {
     table.__name__: table
     for table in (
@@ -302,6 +323,8 @@ TABLES: Mapping[str, Callable[[], str]] = {
         prediction_calibration,
         blind_calibration,
         blind_headline,
+        blind_plane,
+        blind_plane_headline,
     )
 }
 

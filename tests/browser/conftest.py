@@ -20,6 +20,13 @@ def browser() -> Iterator[Browser]:
         yield found
 
 
+@pytest.fixture(scope="module")
+def shown(browser: Browser, workbench: Served) -> Iterator[Page]:
+    """One page for tests that show what they need by `show`."""
+    with opened(browser, workbench) as found:
+        yield found
+
+
 @pytest.fixture
 def page(browser: Browser, workbench: Served) -> Iterator[Page]:
     with opened(browser, workbench) as found:

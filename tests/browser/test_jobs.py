@@ -51,7 +51,7 @@ def test_a_refused_job_says_why(jobs: Jobs) -> None:
     started = jobs.start("contact", {"rig": {"name": "nothing"}}, label="", places=NOWHERE)
     job = ended(jobs, started.id)
     assert job.state == "refused"
-    assert "unknown example 'nothing'" in job.reason
+    assert "there is no rig 'nothing'" in job.reason
     with pytest.raises(InvalidInput, match="it has no result"):
         jobs.result(started.id)
 

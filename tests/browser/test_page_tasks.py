@@ -1,4 +1,4 @@
-"""The task of each page by keyboard alone and by touch, and the pages at every size, light and dark."""
+"""The task of each page by keyboard alone and by touch."""
 
 import re
 from collections.abc import Iterator
@@ -11,7 +11,6 @@ from tests.browser.pictures import NEW
 from tests.browser.workbench import Served
 from tests.chromium import CHROMIUM
 
-PAGES = ("predict", "explore", "design", "dissertation", "jobs", "new")
 PHONE: dict[str, Any] = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
 
 pytestmark = [
@@ -163,29 +162,3 @@ def test_jobs_by_touch(phone: Page, workbench: Served) -> None:
     phone.get_by_test_id("delete-job").first.tap()
     phone.get_by_test_id("delete-job").first.tap()
     expect(phone.get_by_test_id("no-jobs")).to_be_visible()
-
-
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize(("width", "height"), [(1280, 800), (820, 1180), (390, 844)])
-def test_pages_have_their_layout(width: int, height: int, scheme: Any, browser: Browser, workbench: Served) -> None:
-    with opened(browser, workbench, viewport={"width": width, "height": height}, color_scheme=scheme) as page:
-        for where in PAGES:
-            show(page, workbench, "tribometer", {}, where=where)
-            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), where
-            assert page.evaluate(_CUT_OFF) == [], where
-            if where == "predict":
-                panel, lead = (page.locator(place).bounding_box() for place in (".rig", ".lead"))
-                assert panel is not None
-                assert lead is not None
-                beside = panel["x"] + panel["width"] <= lead["x"]
-                assert beside if width > 1000 else beside or lead["y"] <= panel["y"]
-        shade = page.evaluate("getComputedStyle(document.body).backgroundColor.match(/\\d+/g).map(Number)")
-        assert (sum(shade) < 3 * 128) is (scheme == "dark")
-
-
-_CUT_OFF = """() => [...document.querySelectorAll('button, select, input:not([type=range]), h1, label')]
-    .filter((element) => element.checkVisibility() && !element.closest('.table-frame, .choices, .hidden, .skip')
-      && !element.classList.contains('hidden') && !element.classList.contains('skip'))
-    .map((element) => [element, element.getBoundingClientRect()])
-    .filter(([, box]) => box.width && (box.right > innerWidth + 1 || box.left < -1))
-    .map(([element]) => element.outerHTML.slice(0, 120))"""

@@ -3,7 +3,7 @@
 import http.client
 import threading
 from collections.abc import Iterator
-from contextlib import closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from dataclasses import replace
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -71,10 +71,12 @@ def proxied(workbench: Served, *, host: str) -> Iterator[str]:
     ids=["as Jupyter on this computer", "as nginx with a name"],
 )
 def test_the_workbench_is_used_below_a_prefix(
-    host: str, options: tuple[str, ...], browser: Browser, tmp_path: Path
+    host: str, options: tuple[str, ...], browser: Browser, workbench: Served, tmp_path: Path
 ) -> None:
-    with served(tmp_path, *options) as workbench, proxied(workbench, host=host) as address:
-        behind = replace(workbench, link=f"{address}?token={workbench.token}")
+    with ExitStack() as stack:
+        behind = stack.enter_context(served(tmp_path, *options)) if options else workbench
+        address = stack.enter_context(proxied(behind, host=host))
+        behind = replace(behind, link=f"{address}?token={behind.token}")
         with opened(browser, behind) as page:
             assert page.url.startswith(f"{address}#/predict")
             enter(page, VOLTS, "21 V")
@@ -97,8 +99,8 @@ def test_the_workbench_is_used_below_a_prefix(
             page.get_by_test_id("job-result").wait_for()
 
 
-def test_a_proxy_whose_name_was_not_allowed_is_refused(browser: Browser, tmp_path: Path) -> None:
-    with served(tmp_path) as workbench, proxied(workbench, host=PROXIED) as address:
+def test_a_proxy_whose_name_was_not_allowed_is_refused(browser: Browser, workbench: Served) -> None:
+    with proxied(workbench, host=PROXIED) as address:
         page = browser.new_page()
         reply = page.goto(f"{address}?token={workbench.token}")
         assert reply is not None

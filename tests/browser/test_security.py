@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from sonolube.browser.server import Access, Guard, Receive, Scope, Send
+from sonolube.browser.access import Access, Guard, Receive, Scope, Send
 
 TOKEN = "t" * 43
 ACCESS = Access(token=TOKEN, port=8765)

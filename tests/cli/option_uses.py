@@ -67,7 +67,10 @@ EXECUTION = {"--once", "--force", "--real-time", "--yes", "--workers", "--schedu
 PLACES = {"--out", "--json", "--help", "--brief"}
 # A run takes a minute, or needs a test of its own; tests of these commands try them.
 TESTED_ELSEWHERE = {
-    *(("app", option) for option in ("--port", "--no-browser", "--host", "--token-file", "--allow-host")),
+    *(
+        ("app", option)
+        for option in ("--port", "--no-browser", "--host", "--token-file", "--allow-host", "--lab", "--runs")
+    ),
     ("reproduce", "--chapter"),
     ("uncertainty", "--identified"),
     ("identify rig", "--facts"),
@@ -174,6 +177,11 @@ MODES = {
         "new",
         ("OUT/rig.toml", *KNOWN, "--amplitude", "3um", "--direction", "torsional", "--torsion-radius", "20mm"),
         {"--torsion-radius": "15mm"},
+    ),
+    "new of a soft layer": Mode(
+        "new",
+        ("OUT/rig.toml", *KNOWN, "--pin", "felt", "--amplitude", "3um", "--layer-thickness", "3mm"),
+        {"--layer-thickness": "5mm"},
     ),
     "new with an actuator": Mode(
         "new",
@@ -312,6 +320,14 @@ MODES = {
             "--force-unit": ("N", "kN"),
             "--body-mass": "2kg",
         },
+    ),
+    "modes of another program with a static analysis": Mode(
+        "modes",
+        (
+            *("--from", "FOLDER/bar.unv", *FOREIGN, "--length-unit", "mm", "--force-unit", "N"),
+            *("--static-compliance", "1e-6m/N", "--displacement-per-volt", "-10nm/V"),
+        ),
+        {"--static-compliance": "2e-6m/N", "--displacement-per-volt": "-20nm/V"},
     ),
     "impedance of a part": Mode(
         "impedance compute",
@@ -600,8 +616,12 @@ MODES = {
             "--group": "run",
             "--channel": "friction",
             "--section": "2",
+            "--part": "1s:9s",
         }
         | SHEETS,
+    ),
+    "friction of stated parts": Mode(
+        "measure friction", ("FOLDER/friction.csv",), {"--rest": "0s:1s", "--step": "1s:5s=10V"}
     ),
     "friction of a test in several files": Mode(
         "measure friction", ("FOLDER/friction.csv", "FOLDER/other.csv"), flags=("--join",)

@@ -1,6 +1,7 @@
 """Tables of measured runs: every column, empty cells, references without vibration, copies, refusals in one line."""
 
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -10,12 +11,14 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_runs import (
     checked_ratios,
     copies_caveat,
+    direction_words,
     read_runs,
     run_caveats,
     setting,
     with_columns,
 )
-from sonolube.measurement.run_columns import RUN_COLUMNS
+from sonolube.measurement.run_columns import DIRECTION_WORDS, RUN_COLUMNS
+from sonolube.rig.vibration_direction import DirectionWord, VibrationDirection
 from sonolube.text.units import to_si
 from sonolube.vocabulary import quantities
 
@@ -36,6 +39,35 @@ def test_a_table_with_every_column_is_read_in_si(tmp_path: Path) -> None:
         else:
             expected = to_si(f"2 {column.unit}", unit=quantities()[column.name].unit, name=column.name)
             assert float(runs[column.name][0]) == approx(expected)
+
+
+def test_a_direction_may_be_a_word_or_an_angle(tmp_path: Path) -> None:
+    words = "along,longitudinal,across,Transverse,normal,perpendicular,torsional,"
+    text = "vibration_direction,friction_ratio\n" + "".join(f"{word},0.5\n" for word in words.split(","))
+    runs = read_runs(table(tmp_path, text))
+    expected = [0, 0, np.pi / 2, np.pi / 2, *[np.nan] * 4]
+    assert runs["vibration_direction"].to_numpy() == approx(expected, nan_ok=True)
+    assert direction_words(runs) == {"normal", "torsional"}
+    mixed = read_runs(table(tmp_path, "vibration_direction [deg],friction_ratio\nacross,0.5\n30,0.4\n,0.3\n"))
+    assert mixed["vibration_direction"].to_numpy() == approx([np.pi / 2, np.pi / 6, np.nan], nan_ok=True)
+    assert direction_words(mixed) == frozenset()
+    plain = read_runs(table(tmp_path, "vibration_direction [deg],friction_ratio\n30,0.4\n"))
+    assert "vibration_direction_word" not in plain
+
+
+def test_a_direction_that_is_neither_and_angles_without_a_unit_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(InvalidInput, match="line 2: vibration_direction 'sideways' is no number"):
+        read_runs(table(tmp_path, "vibration_direction [deg],friction_ratio\nsideways,0.4\n"))
+    with pytest.raises(InvalidInput, match="vibration_direction has no unit"):
+        read_runs(table(tmp_path, "vibration_direction,friction_ratio\nalong,0.4\n30,0.4\n"))
+
+
+def test_words_for_directions_are_those_of_a_rig_file() -> None:
+    assert set(DIRECTION_WORDS) == {*get_args(DirectionWord)}
+    assert all(
+        DIRECTION_WORDS[word] == approx(VibrationDirection(direction=word).angle)
+        for word in ("along", "longitudinal", "across", "transverse")
+    )
 
 
 def test_a_path_may_be_text(tmp_path: Path) -> None:

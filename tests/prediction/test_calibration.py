@@ -13,8 +13,9 @@ from sonolube.prediction.calibration import (
     UnseenPrediction,
     blind_calibration,
     calibrations,
+    plane_calibration,
 )
-from sonolube.prediction.figures import blind_caption
+from sonolube.prediction.figures import blind_caption, plane_caption
 from sonolube.prediction.hierarchy import (
     PROBABILITIES,
     binomial_interval,
@@ -44,6 +45,15 @@ def test_the_blind_score_is_below_that_of_the_mean_ratio_but_not_shown_to_be() -
 
 def test_records_that_no_user_has_make_the_score_look_better_than_it_is() -> None:
     assert by_name()[BY_RECORDS].crps < 0.7 * by_name()[BLIND].crps
+
+
+def test_within_the_plane_each_point_is_predicted_by_the_other_and_how_far_is_said_first() -> None:
+    found = plane_calibration()
+    littmann, gutowski = found.predictions
+    assert (littmann.friction_ratio, gutowski.friction_ratio) == approx((1.0, 0.1))  # D 2.2.5 and 1.3.1
+    assert found.covered(0.8) == found.covered(0.95) == 2
+    assert found.median_width < 0.4  # and does not hold everything
+    assert plane_caption().startswith("Within the plane of contact it was tested with 2 published points along")
 
 
 def test_the_gain_over_a_rival_has_the_mean_and_the_bootstrap_of_two_sets() -> None:

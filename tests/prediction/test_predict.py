@@ -242,6 +242,19 @@ def test_runs_of_vibration_in_the_contact_plane_are_refused(tmp_path: Path) -> N
         predict(rig(), runs=read_runs(runs_file(tmp_path, "2,90,0.5", head=head)))
 
 
+def test_words_for_the_direction_of_runs_count_as_their_angles(tmp_path: Path) -> None:
+    head = "vibration_amplitude [um],vibration_direction,friction_ratio"
+    with raises(InvalidInput, match="vibration along the normal"):
+        predict(rig(), runs=read_runs(runs_file(tmp_path, "2,across,0.5", head=head)))
+    with raises(InvalidInput, match="leave out runs with the direction torsional"):
+        predict(rig(), runs=read_runs(runs_file(tmp_path, "2,torsional,0.5", head=head)))
+    stated = predict(rig(), runs=read_runs(runs_file(tmp_path, "2,normal,0.5", head=head)))
+    silent = predict(
+        rig(), runs=read_runs(runs_file(tmp_path, "2,0.5", head="vibration_amplitude [um],friction_ratio"))
+    )
+    assert stated["friction_ratio"].to_numpy() == approx(silent["friction_ratio"].to_numpy())
+
+
 def test_empty_cells_take_what_the_rig_has(tmp_path: Path) -> None:
     full = predict(rig(), runs=read_runs(runs_file(tmp_path, "2,20.3,0.5", "2.5,20.3,0.4")))
     empty = predict(rig(), runs=read_runs(runs_file(tmp_path, "2,,0.5", "2.5,,0.4", "2.5,,")))

@@ -82,8 +82,8 @@ def test_the_map_of_a_groove_runs_downwards_and_its_line_goes_round_the_worn_rec
     assert isinstance(line, Line)
     assert max(field.values.shape) <= 750
     assert field.values.min() == approx(-5.0)
-    assert panel.y.lowest == approx(400.0)  # um, at the bottom
-    assert panel.y.highest == 0.0
+    assert panel.y.lowest == approx(399.0)  # um, the edge of the last row at the bottom, from the centre of the first
+    assert panel.y.highest == approx(-1.0)
     x, y = (values[np.isfinite(values)] for values in (line.x, line.y))
     assert (x.min(), x.max()) == approx((1e6 * levelled.x[300] - 0.5, 1e6 * levelled.x[1200] + 0.5))
     assert (y.min(), y.max()) == approx((1e6 * levelled.y[50] - 1, 1e6 * levelled.y[150] + 1))

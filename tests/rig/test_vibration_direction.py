@@ -6,10 +6,13 @@ from typing import Any
 import numpy as np
 import pytest
 from pytest import approx, raises
+from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
 import sonolube as sl
 from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.models.contact import separation
+from sonolube.models.contact.tangential_stiffness import mindlin_tangential_stiffness
 from sonolube.models.friction import torsional_vibration_ratio
 from sonolube.rig import Rig, friction_point, operating_points, point_batch, read_rig, rig_from, simulate, wear_point
 from sonolube.rig.contact_temperature import temperature_point, thermal_solid
@@ -195,8 +198,8 @@ def test_wear_within_the_plane_has_no_number() -> None:
         (["vibration.second_direction=normal", "vibration.second_fraction=0.2"], "that of the vibration itself"),
         (["vibration.direction=along", "friction.in_plane_fraction=0.2", SPRINGS], "say the same twice"),
         (
-            ["vibration.direction=across", BRISTLE],
-            "friction.model: bristle_with_holder has no law for a vibration across",
+            ["vibration.direction=across", "friction.model=dong_2015_half_period"],
+            "friction.model: dong_2015_half_period has no law for a vibration across",
         ),
         (["vibration.direction=along", "friction.model=kinematic"], "take asperity_stick_slip or bristle_with_holder"),
         (["vibration.direction=torsional", "vibration.torsion_radius=2um"], "by more than 0.1 rad"),
@@ -206,6 +209,48 @@ def test_a_direction_without_meaning_is_refused_in_one_line(changes: list[str], 
     with raises(SonolubeError) as refusal:
         tribometer(*changes)
     assert message in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+def _dahl_within_the_plane(rig: Rig, angle: float) -> float:
+    """Friction ratio of Dahl's law at an angle under a constant load, by integration over many periods."""
+    rest = separation(rig.contact, normal_load=rig.normal_load)
+    assert rig.friction_coefficient is not None
+    stiffness = float(mindlin_tangential_stiffness(rig.contact, separation=rest))
+    limit, peak = rig.friction_coefficient * rig.normal_load, peak_velocity(rig)
+    assert rig.drive is not None
+    omega = 2 * np.pi * rig.drive.frequency
+
+    def rate(turn: float, state: np.ndarray) -> list[float]:
+        v = np.array([rig.sliding_speed + peak * np.cos(turn) * np.cos(angle), peak * np.cos(turn) * np.sin(angle)])
+        change = (v - np.hypot(*v) * state[:2] / limit) * stiffness / omega
+        return [*change, state[0] / limit / (2 * np.pi)]
+
+    state = np.zeros(3)
+    for _ in range(30):
+        period = solve_ivp(rate, (0, 2 * np.pi), [*state[:2], 0.0], method="LSODA", rtol=1e-8, atol=1e-9, max_step=0.01)
+        state = period.y[:, -1]
+    return float(state[2])
+
+
+@pytest.mark.parametrize("degrees", [40.0, 90.0])
+def test_a_bristle_with_dahls_exponent_has_the_ratio_of_a_long_integration(degrees: float) -> None:
+    rig = tribometer(BRISTLE, "friction.dahl_exponent=1", f"vibration.vibration_direction={degrees}deg")
+    expected = _dahl_within_the_plane(rig, np.radians(degrees))
+    assert friction_point(rig).friction_ratio == approx(expected, abs=1e-3)
+
+
+def test_a_bristle_that_is_elastic_up_to_its_limit_takes_every_direction_and_keeps_more_than_coulomb_has() -> None:
+    ring = ["vibration.direction=torsional", "vibration.torsion_radius=5mm"]
+    for changes in (["vibration.direction=across"], ["vibration.vibration_direction=40deg"], ring):
+        ratio = friction_point(tribometer(BRISTLE, *changes)).friction_ratio
+        assert coulomb(*changes) < ratio < 1
+
+
+def test_a_bristle_on_an_elastic_holder_refuses_across_in_one_line() -> None:
+    rig = tribometer(BRISTLE, "friction.holder_stiffness=1e6N/m", "vibration.direction=across")
+    with raises(SonolubeError, match=r"leave friction.holder_stiffness out for a rigid one") as refusal:
+        friction_point(rig)
     assert "\n" not in str(refusal.value)
 
 

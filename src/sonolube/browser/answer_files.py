@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 from sonolube import __version__
 from sonolube.browser.answers import called, given_arguments, offered_task
+from sonolube.browser.made_by import command, made_by, marked
 from sonolube.browser.places import Places
-from sonolube.browser.take_away import command_line
 from sonolube.errors import InvalidInput
 from sonolube.tasks.answer import Answer
 
@@ -31,7 +31,8 @@ def answer_files(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
     task, arguments = offered_task(str(payload.get("task", ""))), payload.get("arguments") or {}
     with given_arguments(task, arguments, places) as given:
         answer = called(task, given)
-        files = {name: _bytes_of(content) for name, content in answer.files().items()}
+        line = made_by(task, arguments)
+        files = {name: _bytes_of(_marked(name, content, line)) for name, content in answer.files().items()}
     ending = str(payload.get("ending", ""))
     if ending:
         name = next((name for name in files if name.endswith(ending)), None)
@@ -40,9 +41,9 @@ def answer_files(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
         return _file(name, files[name])
     if not files:
         raise InvalidInput(f"{task.name} has no files to take away")
-    command = command_line(task, arguments, places)["text"]
-    name = f"{shlex.split(command)[-1] if answer.rig is None else answer.rig.name}-{task.name.replace(' ', '-')}.zip"
-    return _file(name, _archive({"about.txt": _about(answer, command).encode(), **files}))
+    call = command(task, arguments)
+    name = f"{shlex.split(call)[-1] if answer.rig is None else answer.rig.name}-{task.name.replace(' ', '-')}.zip"
+    return _file(name, _archive({"about.txt": _about(answer, call).encode(), **files}))
 
 
 def _about(answer: Answer, command: str) -> str:
@@ -52,6 +53,11 @@ def _about(answer: Answer, command: str) -> str:
     )
     call = [] if answer.call is None else [f"{name}: {value}" for name, value in answer.call.settings()]
     return "\n".join([f"sonolube {__version__}", *rig, *call, f"command: {command}", *answer.every_caveat(), ""])
+
+
+def _marked(name: str, content: "Content", line: str) -> "Content":
+    """Content that says what made it, where its kind holds remarks."""
+    return marked(name, content, line) if isinstance(content, str | bytes) else content
 
 
 def _bytes_of(content: "Content") -> bytes:

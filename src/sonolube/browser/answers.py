@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 from sonolube.browser.places import Places
 from sonolube.charts import chart_object, chart_tables
 from sonolube.errors import InvalidInput, SeveralFaults, UnknownName
-from sonolube.example_files import example_file
+from sonolube.example_files import example_files
 from sonolube.tasks.answer import Answer, Block, Rows, Table, Verbatim
 from sonolube.tasks.files import NamedBytes, file_path, private_files
 from sonolube.tasks.parameters import DoorParameter, File, KeyValues, Mark, OwnFolder, Parameter, RigParameter
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from sonolube.rig import Rig
 
 _MODES: Final = "structure.file"  # the entry of a rig that names another file
+_PART: Final = "PART"  # an argument that is the name of a part, or a STEP file
 _DEVICES: Final = ("lab run", "lab hold", "lab check")  # which open a device
 
 
@@ -170,7 +171,10 @@ def rig_path(source: Mapping[str, Any], places: Places, stack: ExitStack) -> Pat
         raise InvalidInput("rig: give the name of an example, or the text of a file", key="rig")
     if name in places.rigs:
         return Path(places.rigs[name])
-    return example_file(name).source
+    examples = example_files()
+    if name not in examples or not examples[name].is_rig:
+        raise InvalidInput(f"there is no rig {name[:60]!r} here; choose one of the list, or open its file", key="rig")
+    return examples[name].source
 
 
 def _given(name: str, value: Any, mark: Any, places: Places, stack: ExitStack) -> Any:
@@ -179,6 +183,8 @@ def _given(name: str, value: Any, mark: Any, places: Places, stack: ExitStack) -
         return None if value is None else given_rig(value, places, stack)
     assert isinstance(mark, Parameter)
     if isinstance(mark, File):
+        if mark.kind == _PART and isinstance(value, str) and value.isidentifier():
+            return value  # a part by its name, which no file has that would be read as one
         several = isinstance(value, list)
         files = [_file(name, each, places) for each in (value if several else [value])]
         return files if several else files[0]

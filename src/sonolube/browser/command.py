@@ -24,6 +24,11 @@ Allowed = Annotated[
     list[str] | None,
     typer.Option("--allow-host", metavar="NAME", help="Name of a proxy by which pages may ask; may come again."),
 ]
+DeviceMap = Annotated[
+    Path | None,
+    typer.Option(metavar="MAP.toml", help="Devices of the rig that page Lab runs; without it a virtual tribometer."),
+]
+Runs = Annotated[Path, typer.Option(metavar="DIR", help="Folder of the runs of page Lab.")]
 
 
 def app(
@@ -33,6 +38,8 @@ def app(
     host: Host = "127.0.0.1",
     token_file: TokenFile = None,
     allow_host: Allowed = None,
+    lab: DeviceMap = None,
+    runs: Runs = Path("runs"),
 ) -> None:
     """Open the workbench in the browser.
 
@@ -51,7 +58,27 @@ def app(
         from sonolube.rig import read_rig
 
         read_rig(rig)  # its faults are said here, not on a page
+    if lab is not None:
+        _require_devices(lab)
     token = "" if token_file is None else token_of_file(token_file)
     if host not in _LOOPBACK:
         typer.echo(f"Other computers can reach it at {host}; without a proxy, what is sent can be read on the way.")
-    run(rig=rig, port=port, host=host, token=token, hosts=tuple(allow_host or ()), opens_browser=browser)
+    run(
+        rig=rig,
+        port=port,
+        host=host,
+        token=token,
+        hosts=tuple(allow_host or ()),
+        opens_browser=browser,
+        device_map=lab,
+        runs=runs,
+    )
+
+
+def _require_devices(device_map: Path) -> None:
+    """Raise if a map of devices has faults, or parts that it needs are not installed."""
+    from sonolube.laboratory.drivers import missing_parts, read_device_map
+
+    found = missing_parts(read_device_map(device_map))
+    if found:
+        raise InvalidInput(f"--lab {device_map}: {found[0]}")

@@ -4,10 +4,13 @@ import json
 import sys
 import time
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sonolube.browser.answers import answer_object, called, given_arguments, offered_task
+from sonolube.browser.kinds import WITH_MODES
+from sonolube.browser.made_by import made_by, marked
 from sonolube.browser.places import Places
 from sonolube.browser.worker import encoded, limit_process
 from sonolube.errors import SonolubeError
@@ -15,7 +18,7 @@ from sonolube.storage.files import write_atomically
 from sonolube.tasks.task import marks_of
 
 if TYPE_CHECKING:
-    from sonolube.tasks.answer import Content
+    from sonolube.tasks.answer import Answer, Content
 
 _CPU_TIME = 600  # seconds
 _BETWEEN = 0.2  # seconds from one record of progress to the next
@@ -26,7 +29,7 @@ class _Record:
 
     def __init__(self, folder: Path) -> None:
         self._path = folder / "state.json"
-        self._begun, self._written = time.monotonic(), 0.0
+        self._begun, self._written, self.of = time.monotonic(), 0.0, ""
 
     def progress(self, stage: str, done: int, total: int) -> None:
         """Write the progress, not more often than people can read."""
@@ -36,7 +39,7 @@ class _Record:
     def write(self, state: str, **more: object) -> None:
         """Write the state."""
         self._written = time.monotonic()
-        content = {"state": state, "seconds": self._written - self._begun} | more
+        content = {"state": state, "of": self.of, "seconds": self._written - self._begun} | more
         write_atomically(self._path, json.dumps(content))
 
 
@@ -49,10 +52,14 @@ def main(folder: Path) -> None:
     try:
         task = offered_task(request["task"])
         with given_arguments(task, request["arguments"], Places(**request["places"])) as given:
+            line = made_by(task, request["arguments"])
+            record.of = line.removeprefix("Made by ")
             watch = {"progress": record.progress} if "progress" in marks_of(task.function) else {}
             answer = called(task, given | watch)
-            names = write_files(answer.files(), folder=folder / "files")
-            write_atomically(folder / "result.json", encoded(answer_object(answer) | {"files": names}).decode())
+            files = dict(answer.files()) | dict(_page_files(task.name, answer))
+            names = write_files(files, folder=folder / "files", line=line)
+            more = {"files": names, "made_by": line}
+            write_atomically(folder / "result.json", encoded(answer_object(answer) | more).decode())
     except SonolubeError as failure:
         record.write("refused", reason=str(failure))
     except MemoryError:
@@ -61,17 +68,35 @@ def main(folder: Path) -> None:
         record.write("done")
 
 
-def write_files(contents: "Mapping[str, Content]", *, folder: Path) -> list[str]:
-    """Write the files of an answer, and return their names."""
+def _page_files(task: str, answer: "Answer") -> "Mapping[str, Content]":
+    """Files that a page shows beside those of the answer."""
+    if task not in WITH_MODES:
+        return {}
+    from sonolube.browser.mode_view import mode_files
+
+    return mode_files(answer)
+
+
+def write_files(contents: "Mapping[str, Content]", *, folder: Path, line: str) -> list[str]:
+    """Write the files of an answer, each with a line on what it is of, and return their names."""
     from sonolube.rig import write_netcdf
 
     for name, content in contents.items():
         path = folder / name
         if isinstance(content, str | bytes | Path):
-            write_atomically(path, content.read_bytes() if isinstance(content, Path) else content)
+            write_atomically(path, marked(name, content.read_bytes() if isinstance(content, Path) else content, line))
         else:
-            write_netcdf(content, path=path)
+            write_netcdf(_with_line(content, line), path=path)
     return list(contents)
+
+
+def _with_line(content: Any, line: str) -> Any:
+    """Dataset with the line among its attributes."""
+    from sonolube.rig.datasets import LabelledArrays
+
+    if isinstance(content, LabelledArrays):
+        return replace(content, attrs={**content.attrs, "made_by": line})
+    return content.assign_attrs(made_by=line)
 
 
 if __name__ == "__main__":

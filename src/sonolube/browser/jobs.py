@@ -39,7 +39,7 @@ class Job:
     id : str
     task : str
     label : str
-        What it is of, as its page named it.
+        Title that its page gave it.
     created : float
         Time of day in seconds since 1970.
     state : str
@@ -52,6 +52,8 @@ class Job:
         Since it began to run.
     reason : str
         Why it was refused or failed.
+    of : str
+        Version, seed and command of its call; empty before it runs.
     """
 
     id: str
@@ -64,6 +66,7 @@ class Job:
     total: int = 0
     seconds: float = 0.0
     reason: str = ""
+    of: str = ""
 
 
 class Jobs:

@@ -18,7 +18,13 @@ class Places:
         Paths of rig files by name, beside those of the examples.
     uploads : str
         Folder of the files that were uploaded; empty for none.
+    device_map : str
+        Path of the map of the rig's devices; empty for the virtual tribometer.
+    runs : str
+        Folder of all runs of the laboratory; empty for none.
     """
 
     rigs: Mapping[str, str]
     uploads: str = ""
+    device_map: str = ""
+    runs: str = ""

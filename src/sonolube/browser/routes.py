@@ -1,18 +1,10 @@
-"""Routes of the workbench: pages and their files, tasks, rigs, uploads and jobs.
+"""Routes of the workbench: pages and their files, tasks, rigs, uploads, jobs and the laboratory."""
 
-Scripts, styles and drawings are kept in memory as they are sent: compressed and tagged by content.
-"""
-
-import gzip
-import json
 from collections.abc import Mapping
 from dataclasses import asdict
-from functools import cache
-from hashlib import sha256
 from importlib.resources import files
-from pathlib import Path, PurePosixPath
-from types import MappingProxyType
-from typing import Any, Final
+from pathlib import Path
+from typing import Any
 
 from starlette.applications import Starlette
 from starlette.middleware import Middleware
@@ -24,56 +16,14 @@ from starlette.routing import Route
 from sonolube.browser.first_page import shipped_answer
 from sonolube.browser.jobs import KEPT_DAYS, Jobs
 from sonolube.browser.kinds import VIEWS
+from sonolube.browser.lab.routes import Laboratory
+from sonolube.browser.lab.runner_records import laboratory_folder
+from sonolube.browser.messages import JSON as _JSON, content_of as _content, json_response as _json, refused as _refusal
 from sonolube.browser.places import Places
+from sonolube.browser.static_files import static_file
 from sonolube.browser.uploads import Uploads
 from sonolube.browser.worker import Pool
 from sonolube.errors import InvalidInput, SonolubeError, UnknownName
-
-_FOLDER: Final = Path(str(files("sonolube.browser"))) / "static"
-_KINDS: Final = MappingProxyType(
-    {
-        ".js": "text/javascript; charset=utf-8",
-        ".css": "text/css; charset=utf-8",
-        ".html": "text/html; charset=utf-8",
-        ".json": "application/json",
-        ".svg": "image/svg+xml",
-    }
-)
-_PLAIN: Final = "text/plain; charset=utf-8"
-_LEVEL: Final = 6  # of the compression, once a file
-
-
-async def static_file(request: Request) -> Response:
-    """File below `static` of a request, by its path; 404 where there is none, 304 where the browser has it."""
-    name = request.path_params["name"]
-    if name not in _names():
-        return Response("There is no such file.", status_code=404, media_type="text/plain")
-    content, compressed, kind, tag = _kept(name)
-    headers = {"cache-control": "no-cache", "etag": tag, "vary": "Accept-Encoding"}
-    if request.headers.get("if-none-match") == tag:
-        return Response(status_code=304, headers=headers)
-    if "gzip" not in request.headers.get("accept-encoding", ""):
-        return Response(content, media_type=kind, headers=headers)
-    return Response(compressed, media_type=kind, headers=headers | {"content-encoding": "gzip"})
-
-
-@cache
-def _names() -> frozenset[str]:
-    """Paths of all files, with slashes."""
-    return frozenset(path.relative_to(_FOLDER).as_posix() for path in _FOLDER.rglob("*") if path.is_file())
-
-
-@cache
-def _kept(name: str) -> tuple[bytes, bytes, str, str]:
-    """Content of a file, read and compressed once."""
-    content = (_FOLDER / name).read_bytes()
-    kind = _KINDS.get(PurePosixPath(name).suffix, _PLAIN)
-    compressed = gzip.compress(content, _LEVEL, mtime=0)
-    return content, compressed, kind, f'"{sha256(content).hexdigest()[:16]}"'
-
-
-_LARGEST_REQUEST: Final = 4 * 2**20  # bytes of JSON
-_JSON: Final = "application/json"
 
 
 class Workbench:
@@ -88,11 +38,31 @@ class Workbench:
         Paths of rig files by name, beside the examples.
     opened : str
         Name of the rig that the first page shows.
+    device_map : Path or None
+        Of the rig of the laboratory; None for the virtual tribometer.
+    runs : Path
+        Folder of its runs.
     """
 
-    def __init__(self, *, pool: Pool, jobs: Jobs, uploads: Uploads, rigs: Mapping[str, str], opened: str) -> None:
+    def __init__(
+        self,
+        *,
+        pool: Pool,
+        jobs: Jobs,
+        uploads: Uploads,
+        rigs: Mapping[str, str],
+        opened: str,
+        device_map: Path | None = None,
+        runs: Path = Path("runs"),
+    ) -> None:
         self.pool, self.jobs, self.uploads, self.opened = pool, jobs, uploads, opened
-        self._places = Places(rigs=dict(rigs), uploads=str(uploads.folder))
+        self._places = Places(
+            rigs=dict(rigs),
+            uploads=str(uploads.folder),
+            device_map="" if device_map is None else str(device_map.resolve()),
+            runs=str(runs.resolve()),
+        )
+        self.laboratory = Laboratory(pool=pool, uploads=uploads, places=self._places, folder=laboratory_folder())
 
     def application(self) -> Starlette:
         """Application by ASGI, without the checks of `Guard`."""
@@ -109,6 +79,7 @@ class Workbench:
             Route("/api/jobs/{id}/cancel", self._cancel_job, methods=["POST"]),
             Route("/api/jobs/{id}/result", self._job_result, methods=["GET"]),
             Route("/api/jobs/{id}/files/{name:path}", self._job_file, methods=["GET"]),
+            *self.laboratory.routes(),
             Route("/api/{kind}", self._view, methods=["POST"]),
             Route("/static/{name:path}", static_file, methods=["GET"]),
         ]
@@ -122,11 +93,11 @@ class Workbench:
         return Response(content, media_type="text/html", headers={"cache-control": "no-cache"})
 
     async def _start(self, request: Request) -> Response:
-        """Rig that the first page shows, and what is offered."""
+        """Rig that the first page shows, and whether a run is at work, for the stop button of every page."""
         del request
         from sonolube import __version__
 
-        return _json({"rig": self.opened, "version": __version__})
+        return _json({"rig": self.opened, "version": __version__, "is_running": self.laboratory.is_at_work()})
 
     async def _description(self, request: Request) -> Response:
         """OpenAPI description of the tasks."""
@@ -209,37 +180,3 @@ def _require_task(name: str) -> None:
 
     if name not in {task.name for task in TASKS}:
         raise InvalidInput(f"task: there is none named {name[:60]!r}", key="task")
-
-
-async def _refusal(request: Request, failure: Exception) -> Response:
-    """Refusal as JSON."""
-    del request
-    text = str(failure)
-    return _json({"text": text, "faults": [{"key": getattr(failure, "key", ""), "text": text}]}, status=422)
-
-
-async def _content(request: Request) -> dict[str, Any]:
-    """Object of a request as JSON."""
-    body = bytearray()
-    async for part in request.stream():
-        body += part
-        if len(body) > _LARGEST_REQUEST:
-            raise InvalidInput("the request is larger than 4 MiB; upload files instead")
-    try:
-        content = json.loads(body or b"{}", parse_constant=_refuse_constant)
-    except (ValueError, RecursionError):
-        raise InvalidInput("the request is no JSON") from None
-    if not isinstance(content, dict):
-        raise InvalidInput("the request is no object of JSON")
-    return content
-
-
-def _refuse_constant(name: str) -> None:
-    """Refuse constants that JSON lacks."""
-    raise ValueError(name)
-
-
-def _json(content: Mapping[str, Any], *, status: int = 200) -> Response:
-    """Answer as JSON."""
-    body = json.dumps(content).encode()
-    return Response(body, status_code=status, media_type=_JSON, headers={"cache-control": "no-store"})

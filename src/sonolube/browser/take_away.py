@@ -9,12 +9,11 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any, Final
 
-from sonolube import __version__
-from sonolube.browser.answers import called, given_arguments, offered_task, positional, rig_path
+from sonolube.browser.answers import called, given_arguments, offered_task, rig_path
+from sonolube.browser.made_by import command, made_by, marked, named, rig_file, version_and_seed
 from sonolube.browser.places import Places
 from sonolube.charts import chart_tables
 from sonolube.errors import InvalidInput, entry_named
-from sonolube.operating_system import quoted
 from sonolube.report.page import Page, PageTable, rendered_files
 from sonolube.tasks.answer import Answer, Rows, Table, Verbatim
 from sonolube.tasks.parameters import RigParameter
@@ -33,38 +32,23 @@ def taken(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
     return entry_named(_FORMS, form, kind="form")(task, payload.get("arguments") or {}, places)
 
 
-def _file(name: str, kind: str, text: str) -> dict[str, Any]:
+def _file(name: str, kind: str, text: str | bytes) -> dict[str, Any]:
     """File to take away."""
     return {"name": name, "kind": kind, "text": text}
 
 
-def command_line(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[str, Any]:
+def _command(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[str, Any]:
     """Command of a terminal that gives the same numbers."""
     del places
-    words = ["sonolube", *task.name.split()]
-    marks, by_place = marks_of(task.function), positional(task)
-    for name, value in arguments.items():
-        if isinstance(marks[name], RigParameter):
-            words.append(_rig_file(value))
-            words += [word for key, text in (value.get("changes") or {}).items() for word in ("--set", f"{key}={text}")]
-            continue
-        option = (marks[name].option or f"--{name.replace('_', '-')}").split()[0]  # type: ignore[union-attr]
-        if value is True:
-            words.append(option)
-        elif isinstance(value, Mapping) and not _is_file(value):
-            words += [word for key, each in value.items() for word in (option, f"{key}={each}")]
-        elif value is not None and value is not False:
-            named = _named(value)
-            several = named if isinstance(named, list) else [named]
-            flag = [] if name in by_place else [option]
-            words += [word for each in several for word in (*flag, str(each))]
-    return _file("command.txt", "text/plain", " ".join(map(quoted, words)))
+    text = f"{command(task, arguments)}\n# {version_and_seed(task, arguments)}"
+    return _file(_name(task, arguments, "txt"), "text/plain", text)
 
 
 def python(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[str, Any]:
     """Program in Python that gives the same numbers."""
     del places
-    return _file("answer.py", "text/x-python", _python_text(task, arguments))
+    text = f"# Made by {version_and_seed(task, arguments)}\n{_python_text(task, arguments)}"
+    return _file(_name(task, arguments, "py"), "text/x-python", text)
 
 
 def _python_text(task: Task, arguments: Mapping[str, Any]) -> str:
@@ -74,10 +58,10 @@ def _python_text(task: Task, arguments: Mapping[str, Any]) -> str:
     for name, value in arguments.items():
         if isinstance(marks[name], RigParameter):
             changes = [f"{key}={text}" for key, text in (value.get("changes") or {}).items()]
-            lines.append(f"rig = sl.read_rig({_rig_file(value)!r}, changes={changes!r})")
+            lines.append(f"rig = sl.read_rig({rig_file(value)!r}, changes={changes!r})")
             given.insert(0, "rig" if name == "rig" else f"{name}=rig")
         elif value is not None:
-            given.append(f"{name}={_named(value)!r}")
+            given.append(f"{name}={named(value)!r}")
     function = f"sl.{task.name.replace(' ', '.').replace('-', '_')}"
     return "\n".join([*lines, f"answer = {function}({', '.join(given)})", "print(answer)", ""])
 
@@ -87,7 +71,8 @@ def rig_toml(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[s
     source = _rig_of(task, arguments)
     with ExitStack() as stack:
         text = rig_path(source, places, stack).read_text(encoding="utf-8")
-    return _file(_rig_file(source), "application/toml", changed_text(text, source.get("changes") or {}))
+    changed = changed_text(text, source.get("changes") or {})
+    return _file(rig_file(source), "application/toml", marked(".toml", changed, made_by(task, arguments)))
 
 
 def changed_text(text: str, changes: Mapping[str, str]) -> str:
@@ -106,11 +91,12 @@ def notebook(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[s
     """Notebook that gives the same numbers and draws the figure."""
     del places
     cells = [
-        _cell("markdown", f"Made by sonolube {__version__}: `{task.name}`", number=0),
+        _cell("markdown", f"Made by {version_and_seed(task, arguments)}: `{task.name}`", number=0),
         _cell("code", _python_text(task, arguments).replace("print(answer)", "answer").rstrip(), number=1),
         *([_cell("code", "sl.plot(answer)", number=2)] if task.writes else []),
     ]
-    return _file("answer.ipynb", "application/x-ipynb+json", json.dumps(_NOTEBOOK | {"cells": cells}, indent=1))
+    name = _name(task, arguments, "ipynb")
+    return _file(name, "application/x-ipynb+json", json.dumps(_NOTEBOOK | {"cells": cells}, indent=1))
 
 
 def _cell(kind: str, source: str, *, number: int) -> dict[str, Any]:
@@ -120,16 +106,20 @@ def _cell(kind: str, source: str, *, number: int) -> dict[str, Any]:
 
 
 def table(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[str, Any]:
-    """Numbers of the figures as CSV, one table below the other; without figures those of the answer."""
+    """Numbers of the answer and of its figures as CSV, one table below the other."""
     answer = _answer(task, arguments, places)
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
+    for block in answer.blocks():
+        if isinstance(block, Rows | Table):
+            writer.writerows([*([block.heads] if isinstance(block, Table) else []), *block.rows, []])
     charts = [drawing.chart() for drawing in answer.figures().values() if drawing.chart is not None]
     for each in (table for chart in charts for table in chart_tables(chart)):
         writer.writerows([[each["title"]], each["heads"], *each["rows"], []])
-    if not charts:
+    if not out.tell():
         writer.writerows([["quantity", "value", "unit"], *_scalars(answer.object())])
-    return _file("answer.csv", "text/csv", out.getvalue())
+    text = marked(".csv", out.getvalue(), made_by(task, arguments))
+    return _file(_name(task, arguments, "csv"), "text/csv", text)
 
 
 def figure(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[str, Any]:
@@ -140,7 +130,8 @@ def figure(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[str
     if not drawings:
         raise InvalidInput(f"{task.name} has no figure to take away")
     name, drawing = next(iter(drawings.items()))
-    return _file(f"{name}.svg", "image/svg+xml", render_figure(drawing.figure(), "svg").decode())
+    text = marked(".svg", render_figure(drawing.figure(), "svg"), made_by(task, arguments))
+    return _file(f"{name}.svg", "image/svg+xml", text)
 
 
 def report(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[str, Any]:
@@ -150,10 +141,11 @@ def report(task: Task, arguments: Mapping[str, Any], places: Places) -> dict[str
     rig = [] if answer.rig is None else [("rig", answer.rig.title), *(("changed", each) for each in answer.rig.changes)]
     point = [(each["label"], each["text"]) for each in answer.object().get("operating_point", ())]
     page = answer.page() or _page_of_blocks(answer)
-    page = replace(page, name="answer", settings=[*page.settings, *rig, *point, *settings])
+    made = [("made by", made_by(task, arguments).removeprefix("Made by "))]
+    page = replace(page, name="answer", settings=[*page.settings, *rig, *point, *settings, *made])
     notes = [*answer.every_caveat(), *(f"assumed {key}: {reason}" for key, reason in answer.assumptions().items())]
     text = rendered_files(answer.figures(), page=page, notes=notes)["answer.html"]
-    return _file("answer.html", "text/html", str(text))
+    return _file(_name(task, arguments, "html"), "text/html", str(text))
 
 
 def _page_of_blocks(answer: Answer) -> Page:
@@ -186,21 +178,12 @@ def _rig_of(task: Task, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
     return source
 
 
-def _rig_file(source: Mapping[str, Any]) -> str:
-    """Name of the file of a rig."""
-    return f"{source.get('name') or 'rig'}.toml"
-
-
-def _is_file(value: Any) -> bool:
-    """Whether a value of a request is a file."""
-    return isinstance(value, Mapping) and "name" in value and ("upload" in value or "content" in value)
-
-
-def _named(value: Any) -> Any:
-    """Value of an argument with the names of files in place of their content."""
-    if isinstance(value, list):
-        return [_named(each) for each in value]
-    return value["name"] if _is_file(value) else value
+def _name(task: Task, arguments: Mapping[str, Any], ending: str) -> str:
+    """Name of a file to take away, of rig and task."""
+    rigs = [name for name, mark in marks_of(task.function).items() if isinstance(mark, RigParameter)]
+    source = next((arguments[name] for name in rigs if isinstance(arguments.get(name), Mapping)), None)
+    words = [*([] if source is None else [rig_file(source).removesuffix(".toml")]), *task.name.split()]
+    return f"{'-'.join(words)}.{ending}"
 
 
 def _scalars(content: Mapping[str, Any]) -> list[list[Any]]:
@@ -211,7 +194,7 @@ def _scalars(content: Mapping[str, Any]) -> list[list[Any]]:
 
 _FORMS: Mapping[str, Callable[[Task, Mapping[str, Any], Places], dict[str, Any]]] = MappingProxyType(
     {
-        "command": command_line,
+        "command": _command,
         "python": python,
         "toml": rig_toml,
         "notebook": notebook,

@@ -211,6 +211,12 @@ class Pool:
             self._free.put_nowait(place)
             self._widen()
 
+    async def answer(self, kind: str, payload: Mapping[str, Any], places: Places) -> tuple[int, dict[str, Any]]:
+        """Status of the answer to a request, and its object."""
+        status, body = await self.ask(kind, payload, places)
+        found: dict[str, Any] = json.loads(body)
+        return status, found
+
     def end(self) -> None:
         """End all workers."""
         for worker in self._workers:

@@ -12,6 +12,7 @@ from sonolube.cli.console.options import OutputFile, ask, is_terminal
 from sonolube.cli.generated import argument, command_of
 from sonolube.errors import InvalidInput
 from sonolube.facts.materials import material
+from sonolube.rig.new_rig.rig_text import is_soft
 from sonolube.rig.new_rig.stated_text import pin_shape, reader, rotation_of, speed_of, surface_of, vibration_of
 from sonolube.tasks.predict.new import DEFAULT_FINISH, DEFAULT_SHAPE, NewRig, refuse_two_of_one
 from sonolube.tasks.table import task_named
@@ -61,6 +62,9 @@ def _completed(given: dict[str, Any], typed: Mapping[str, Any]) -> dict[str, Any
             given[name] = ask(_option(name), text, default, _readable_speed(given) if name == "speed" else read)
         if name == "speed" and _needs_track(given):
             given["track_radius"] = ask(*_TRACK, lambda radius: speed_of(given["speed"], track_radius=radius))
+    if missing and "layer_thickness" not in given and (soft := _soft(given)):
+        question = f"Thickness of {soft} as a layer on a rigid base, such as 3mm"
+        given["layer_thickness"] = ask("--layer-thickness", question, "3mm", reader("m", name="--layer-thickness"))
     return given
 
 
@@ -77,6 +81,14 @@ def _needs_track(given: Mapping[str, Any]) -> bool:
     """Whether a rotational speed lacks its track, and somebody can be asked for it."""
     has_track = "track_radius" in given or "track_diameter" in given
     return not has_track and is_terminal() and rotation_of(str(given.get("speed", ""))) is not None
+
+
+def _soft(given: Mapping[str, Any]) -> str | None:
+    """Soft body whose friction is that of a layer, of a vibration along the normal; None without one."""
+    if given.get("direction", "normal") != "normal":
+        return None
+    bodies = [material(str(given[name])) for name in ("pin", "disc") if name in given]
+    return next((each.title for each in bodies if is_soft(each)), None)
 
 
 def _readable_speed(given: Mapping[str, Any]) -> Callable[[str], object]:

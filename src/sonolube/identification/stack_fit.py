@@ -58,9 +58,14 @@ def residual_for(spectrum: ImpedanceSpectrum, name: str) -> str:
     return LOG_MAGNITUDE if name == LOG_COMPLEX and not spectrum.has_phase else name
 
 
+def hardly_determined(intervals: Mapping[str, ConfidenceInterval]) -> list[str]:
+    """Names of the parameters that a spectrum hardly determines."""
+    return [name for name, found in intervals.items() if not found.upper < _HARDLY_DETERMINED * found.lower]
+
+
 def caveats_of_spectrum(spectrum: ImpedanceSpectrum, intervals: Mapping[str, ConfidenceInterval]) -> tuple[str, ...]:
     """Warnings about a spectrum of magnitudes only, and about parameters that a spectrum hardly determines."""
-    loose = [name for name, found in intervals.items() if not found.upper < _HARDLY_DETERMINED * found.lower]
+    loose = hardly_determined(intervals)
     named = f"hardly determined: {', '.join(loose)}" if loose else "it determines every parameter"
     if not spectrum.has_phase:
         return (f"the spectrum has no phase, so the fit is to the magnitude of the admittance alone; {named}",)

@@ -31,3 +31,4 @@ from .states import (
     after as after,
 )
 from .supervised_run import Sampling as Sampling
+from .watching import RunWatcher as RunWatcher

@@ -1,4 +1,4 @@
-"""Acquisitions watched by threads: those with clocks of their own, and of a standing rig while an operator works at it.
+"""Acquisitions with clocks of their own, watched by threads.
 
 A thread has its device from the first call to the last, so that one that hangs keeps no other waiting. A run takes
 what was read, and looks for what is wrong, with every block of its own clock: a sample beyond a limit, an error, lost
@@ -9,110 +9,20 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from math import inf
 from threading import Event as Signal, Lock, Thread
 from typing import Final
 
 import numpy as np
 
 from sonolube.errors import SonolubeError
-from sonolube.facts.protocol import Limits
 from sonolube.laboratory import supervision
 from sonolube.laboratory.block import BLOCK_DURATION, Block
 from sonolube.laboratory.devices import SILENT, Acquisition, DeviceError, Devices, Recorder, require_gapless
-from sonolube.laboratory.interlocks import IDLE_RATE, Interlock, first_trip
-from sonolube.laboratory.states import Event, RunControl, RunEnded, ending
+from sonolube.laboratory.interlocks import Interlock, first_trip
+from sonolube.laboratory.standing_rig import still_on
+from sonolube.laboratory.states import Event, RunControl, RunEnded
+from sonolube.laboratory.watching import RunWatcher, told
 from sonolube.text.units import format_si
-
-_VIRTUAL: Final = 2.0  # s, of the time of virtual devices
-_OFF_SHARE: Final = 0.05  # of the limit of the voltage, below which the drive counts as off
-_OFF_VOLTAGE: Final = 1.0  # V, at least, for the offsets of monitors
-_STILL_SHARE: Final = 0.01  # of the speed of the motor, below which the disc counts as at rest
-SETTLING: Final = {"drive": 1.0, "motor": 10.0}
-"""Time in which amplifier and disc come to rest. [s]"""
-
-
-class StandingRig:
-    """Watch over devices whose motor and drive were switched off.
-
-    Parameters
-    ----------
-    devices : Devices
-        Virtual ones, whose time does not go on by itself, are watched for two seconds.
-    locks : sequence of Interlock
-        Of the protocol; those of the temperature hold here too.
-    limits : Limits
-    sample_rate : float
-        Highest that the protocol uses. [Hz]
-    """
-
-    def __init__(self, devices: Devices, locks: Sequence[Interlock], limits: Limits, *, sample_rate: float) -> None:
-        self._acquisition = devices.acquisition
-        channels, self._lasts = devices.acquisition.channels, inf if devices.clock is None else _VIRTUAL
-        self._off = [(what, lock) for what, lock in off_bounds(devices, limits) if lock.channel.name in channels]
-        self._always = [lock for lock in locks if lock.channel.is_watched_at_rest and lock.channel.name in channels]
-        self._names = [lock.channel.name for lock in (*self._always, *(lock for _, lock in self._off))]
-        self._wanted_rate, self._rate, self._time = min(sample_rate, IDLE_RATE), 0.0, 0.0
-        self._failure: BaseException | None = None
-
-    @contextmanager
-    def watched(self, control: RunControl) -> Iterator[None]:
-        """Watch inside a `with` block, by a thread, from when outputs were switched off."""
-        if not self._names:
-            yield
-            return
-        self._rate, self._time = self._acquisition.start(self._names, sample_rate=self._wanted_rate), 0.0
-        ended = Signal()
-        thread = Thread(target=self._look_on, args=(ended, control), daemon=True, name="sonolube standing rig")
-        thread.start()
-        try:
-            yield
-        finally:
-            if self._lasts == inf:
-                ended.set()
-            thread.join()
-            self._acquisition.stop()
-        if self._failure is not None:
-            raise self._failure
-
-    def _look_on(self, ended: Signal, control: RunControl) -> None:
-        """Read block after block until the end, or until something is wrong."""
-        try:
-            while not ended.is_set() and self._time < self._lasts:
-                if trip := self._look():
-                    raise RunEnded(Event.TRIP, trip)
-        except BaseException as failure:  # whatever a driver raises, the rig is watched no more
-            self._failure = failure
-            control.stop(ending(failure)[1])
-
-    def _look(self) -> str:
-        """Read a block, and return what is wrong; empty where nothing is."""
-        block = self._acquisition.read(max(1, round(BLOCK_DURATION * self._rate)))
-        self._time += block.samples / self._rate
-        return first_trip(block, self._names, self._always) or still_on(block, self._names, self._off, self._time)
-
-
-def off_bounds(devices: Devices, limits: Limits) -> list[tuple[str, Interlock]]:
-    """Bounds of channels that show whether motor or drive are off, with what is off within them."""
-    channels = devices.channels
-    volts = max(_OFF_SHARE * limits.voltage_maximum, _OFF_VOLTAGE)
-    at_rest = {
-        "voltage": ("drive", volts),
-        "voltage_peak_to_peak": ("drive", 2 * volts),
-        "rotation_speed": ("motor", _STILL_SHARE * devices.motor.rotation_speed_maximum),
-    }
-    return [(what, Interlock(channels[name], most)) for name, (what, most) in at_rest.items() if name in channels]
-
-
-def still_on(block: Block, names: Sequence[str], off: Sequence[tuple[str, Interlock]], stands: float) -> str:
-    """Why an output that was switched off some time ago, in s, counts as on by a block; empty where none does."""
-    for what, lock in off:
-        trip = first_trip(block, names, [lock]) if stands > SETTLING[what] else ""
-        if trip:
-            most = format_si(lock.limit, lock.channel.unit)
-            return f"the {what} was switched off, but {trip.partition(';')[0]} (off is up to {most}): cut the power"
-    return ""
-
 
 _CONNECTING: Final = 60.0  # s
 _ENDING: Final = 10.0  # s, to stop and release a device
@@ -130,15 +40,24 @@ class OwnClocks:
         Of all channels; those of these acquisitions hold from the first sample to the last.
     off : sequence of (str, Interlock)
         Bounds of all channels while motor and drive are off, with what is off then.
+    watcher : RunWatcher, optional
+        Shown every block.
     """
 
-    def __init__(self, devices: Devices, locks: Sequence[Interlock], off: Sequence[tuple[str, Interlock]] = ()) -> None:
+    def __init__(
+        self,
+        devices: Devices,
+        locks: Sequence[Interlock],
+        off: Sequence[tuple[str, Interlock]] = (),
+        watcher: RunWatcher | None = None,
+    ) -> None:
         self._readers = [
             _Reader(
                 clock,
                 device,
                 [lock for lock in locks if lock.channel.name in device.channels],
                 [(what, lock) for what, lock in off if lock.channel.name in device.channels],
+                watcher,
             )
             for clock, device in devices.further.items()
         ]
@@ -245,9 +164,14 @@ class _Reader:
     """One acquisition with its thread; what both threads use is held by the lock."""
 
     def __init__(
-        self, clock: str, device: Acquisition, locks: Sequence[Interlock], off: Sequence[tuple[str, Interlock]]
+        self,
+        clock: str,
+        device: Acquisition,
+        locks: Sequence[Interlock],
+        off: Sequence[tuple[str, Interlock]],
+        watcher: RunWatcher | None,
     ) -> None:
-        self.clock, self.device = clock, device
+        self.clock, self.device, self._watcher = clock, device, watcher
         self._locks, self._off = locks, off
         self._names = list(device.channels)
         self.has_started, self.has_ended = Signal(), Signal()
@@ -379,6 +303,7 @@ class _Reader:
 
     def _take(self, block: Block) -> None:
         """Hold a block to the limits, and keep it for the run."""
+        told(self._watcher, lambda watcher: watcher.takes_aside(self._names, block))
         if trip := first_trip(block, self._names, self._locks):
             raise RunEnded(Event.TRIP, trip)
         with self._held:

@@ -10,7 +10,7 @@ from sonolube.facts.protocol import Check, Prompt, Protocol, SetPoint, flattened
 from sonolube.laboratory.block import BLOCK_DURATION
 from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting, Recorder
 from sonolube.laboratory.interlocks import drive_sampling, idle_rate, interlocks_for, set_point_trip
-from sonolube.laboratory.own_clocks import OwnClocks, StandingRig, off_bounds
+from sonolube.laboratory.own_clocks import OwnClocks
 from sonolube.laboratory.run_plan import (
     SETTLING,
     SPEED_CHANNEL,
@@ -22,8 +22,10 @@ from sonolube.laboratory.run_plan import (
     rotation_speed,
     speed_checks,
 )
+from sonolube.laboratory.standing_rig import StandingRig, off_bounds
 from sonolube.laboratory.states import Event, RunControl, RunEnded, RunState
 from sonolube.laboratory.supervised_run import Advance, Sampling, SupervisedRun
+from sonolube.laboratory.watching import RunWatcher, told
 from sonolube.storage.interruption import asked_by_signal, undone_at_signal
 from sonolube.text.units import format_si
 
@@ -41,6 +43,7 @@ def run_protocol(
     operator: Operator,
     control: RunControl | None = None,
     advance: Advance | None = None,
+    watcher: RunWatcher | None = None,
 ) -> RunState:
     """Run a protocol on devices and record it.
 
@@ -57,6 +60,8 @@ def run_protocol(
         Requests of others.
     advance : callable, optional
         Reports progress.
+    watcher : RunWatcher, optional
+        Shown set points, blocks and events.
 
     Returns
     -------
@@ -77,7 +82,7 @@ def run_protocol(
     """
     require_possible(protocol, devices)
     control = control or RunControl()
-    run = _Run(protocol, devices, recorder, operator, control)
+    run = _Run(protocol, devices, recorder, operator, control, watcher)
     with undone_at_signal(run.halt), asked_by_signal(control.stop):
         return run.complete(advance)
 
@@ -86,19 +91,28 @@ class _Run(SupervisedRun):
     """One run of a protocol."""
 
     def __init__(
-        self, protocol: Protocol, devices: Devices, recorder: Recorder, operator: Operator, control: RunControl
+        self,
+        protocol: Protocol,
+        devices: Devices,
+        recorder: Recorder,
+        operator: Operator,
+        control: RunControl,
+        watcher: RunWatcher | None,
     ) -> None:
-        super().__init__(devices, recorder, control)
+        super().__init__(devices, recorder, control, watcher)
         self._protocol, self._operator = protocol, operator
         self._points = flattened(protocol)
         self._point = self._points[0]
         self._diameter = groove_diameter(protocol, devices)
         locks = interlocks_for(protocol.limits, devices.channels, drive_sampling(protocol))
         rate = idle_rate(self._points)
-        self._standing = StandingRig(self._devices, locks, protocol.limits, sample_rate=rate)
+        self._standing = StandingRig(self._devices, locks, protocol.limits, sample_rate=rate, watcher=watcher)
         measured = [SPEED_CHANNEL] if speed_checks(protocol) else []
-        self._clocks = OwnClocks(devices, locks, off_bounds(devices, protocol.limits))
-        self._sampling = Sampling(self._devices.acquisition, recorder, locks, beside=self._clocks, also=measured)
+        self._clocks = OwnClocks(devices, locks, off_bounds(devices, protocol.limits), watcher)
+        self._sampling = Sampling(
+            self._devices.acquisition, recorder, locks, beside=self._clocks, also=measured, watcher=watcher
+        )
+        told(watcher, lambda each: each.begins(devices.channels, locks))
         self._drive: DriveSetting | None = None
         self._turns = 0.0
         self._conditions: dict[str, float | str] = {"lubricant": ""}
@@ -135,6 +149,7 @@ class _Run(SupervisedRun):
     def _reach(self, point: SetPoint) -> None:
         """Set the set points with which a step begins, or begin its recording."""
         self._point = point
+        told(self._watcher, lambda watcher: watcher.reaches(point))
         step = step_at(self._protocol, point.step)
         if isinstance(step, Prompt):
             self._ask(step)

@@ -35,6 +35,7 @@ from sonolube.laboratory.states import (
     tried,
 )
 from sonolube.laboratory.supervision import Supervisor
+from sonolube.laboratory.watching import RunWatcher, told
 
 
 class Sampling:
@@ -50,6 +51,8 @@ class Sampling:
         Acquisitions with clocks of their own, which were begun.
     also : sequence of str
         Channels that are sampled with them where the acquisition has them.
+    watcher : RunWatcher, optional
+        Shown every block.
     """
 
     def __init__(
@@ -60,8 +63,10 @@ class Sampling:
         *,
         beside: OwnClocks,
         also: Sequence[str] = (),
+        watcher: RunWatcher | None = None,
     ) -> None:
         self._acquisition, self._recorder, self._beside = acquisition, recorder, beside
+        self._watcher = watcher
         self._locks = [lock for lock in locks if lock.channel.name in acquisition.channels]
         self._watched = [lock.channel.name for lock in self._locks]
         self._watched += [name for name in also if name in acquisition.channels and name not in self._watched]
@@ -187,6 +192,7 @@ class Sampling:
             values = block.values[:, : self._recorded]
             self._recorder.append(Block(first_sample=block.first_sample, sample_rate=self.rate, values=values))
         trip = first_trip(block, self._names, self._locks)
+        told(self._watcher, lambda watcher: watcher.takes(self._names, block, time=self._origin + block.start))
         if not trip:
             self._beside.keep(self._recorder)
         return trip
@@ -205,13 +211,16 @@ class SupervisedRun(ABC):
         Not yet connected.
     recorder : Recorder or None
     control : RunControl
+    watcher : RunWatcher, optional
     """
 
     _clocks: OwnClocks
     _sampling: Sampling
 
-    def __init__(self, devices: Devices, recorder: Recorder | None, control: RunControl) -> None:
-        self._supervisor = Supervisor(devices)
+    def __init__(
+        self, devices: Devices, recorder: Recorder | None, control: RunControl, watcher: RunWatcher | None = None
+    ) -> None:
+        self._supervisor, self._watcher = Supervisor(devices), watcher
         self._devices, self._recorder, self._control = self._supervisor.devices, recorder, control
         self._present, self._is_connected = RunState(), False
 
@@ -255,6 +264,7 @@ class SupervisedRun(ABC):
 
     def _note(self, kind: str, **facts: str | float) -> None:
         """Note what happened; while a run ends, a record that cannot be written is no hindrance."""
+        told(self._watcher, lambda watcher: watcher.notes(kind, facts))
         if self._recorder is None:
             return
         try:

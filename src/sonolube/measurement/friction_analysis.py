@@ -17,6 +17,7 @@ from sonolube.measurement.friction.rotation import (
     hall_pulse_times,
     revolutions_at,
 )
+from sonolube.measurement.friction.stated_parts import STATED_STEP
 from sonolube.measurement.friction.stick_slip import estimate_stick_slip
 from sonolube.measurement.friction.voltage_steps import (
     VoltageStep,
@@ -207,6 +208,7 @@ def analyse_voltage_steps(
         settling_time=settling_time,
         revolutions=revolutions if rotation_speed is None else rotation_speed * (t - t[0]),
         sliding_speed=speed_of_one_direction(recording),
+        stated_steps=channel_values(recording, STATED_STEP) if STATED_STEP in recording else None,
     )
 
 

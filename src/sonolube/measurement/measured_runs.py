@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import RecordingMapping, read_mapping
-from sonolube.measurement.run_columns import FRICTION_COLUMNS, heading
+from sonolube.measurement.run_columns import DIRECTION_COLUMN, FRICTION_COLUMNS, heading
 from sonolube.measurement.run_table import RunTable, assigned_columns, run_table
 
 if TYPE_CHECKING:
@@ -206,6 +206,13 @@ def setting(runs: "xr.Dataset", name: str, otherwise: ArrayLike) -> Floats:
         return other.copy()
     values = np.asarray(runs[name].to_numpy(), float)
     return np.where(np.isnan(values), other, values)
+
+
+def direction_words(runs: "xr.Dataset") -> frozenset[str]:
+    """Words for directions that are no angles, along the normal or torsional, in any run; one for each meaning."""
+    cells = runs[f"{DIRECTION_COLUMN}_word"].to_numpy() if f"{DIRECTION_COLUMN}_word" in runs else ()
+    same = {"perpendicular": "normal", "normal": "normal", "torsional": "torsional"}
+    return frozenset(same[word] for word in map(str, cells) if word in same)
 
 
 def with_columns(runs: "xr.Dataset", *names: str) -> tuple["xr.Dataset", tuple[str, ...]]:

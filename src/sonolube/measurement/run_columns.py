@@ -6,6 +6,7 @@ The list is `run_columns.toml` beside this module.
 import tomllib
 from dataclasses import dataclass
 from importlib.resources import files
+from math import nan, pi
 from typing import Final
 
 
@@ -43,6 +44,15 @@ class RunColumn:
         """Name with the unit in brackets, as at the head of the column."""
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
+
+DIRECTION_COLUMN: Final = "vibration_direction"
+"""Column whose cells are angles or words."""
+
+DIRECTION_WORDS: Final = {
+    **{"along": 0.0, "longitudinal": 0.0, "across": pi / 2, "transverse": pi / 2},
+    **{"normal": nan, "perpendicular": nan, "torsional": nan},
+}
+"""Words for a direction of vibration with the angle to the sliding that stands for each, in rad; NaN for none."""
 
 _TABLE: Final = files("sonolube.measurement").joinpath("run_columns.toml").read_text(encoding="utf-8")
 RUN_COLUMNS: Final = tuple(

@@ -22,7 +22,7 @@ from sonolube.measurement.recordings.text_tables import (
     require_rows,
     text_tables,
 )
-from sonolube.measurement.run_columns import TEXT_NAMES, heading
+from sonolube.measurement.run_columns import DIRECTION_COLUMN, DIRECTION_WORDS, TEXT_NAMES, heading
 from sonolube.measurement.run_headings import meaning_at_stake, run_heading
 from sonolube.text.units import unit_description
 from sonolube.vocabulary import quantities
@@ -45,7 +45,7 @@ class RunTable:
     columns : mapping of str to ndarray, shape (rows,)
         Quantities in SI by name, NaN where a cell is empty.
     texts : mapping of str to list of str
-        Texts by name.
+        Texts by name; `vibration_direction_word` has the words of `DIRECTION_WORDS` in the column of that name.
     lines : list of int
         Of the file, for each row.
     caveats : tuple of str
@@ -121,9 +121,11 @@ def assigned_columns(
     filled = (_cell(cells, each.place) for _, cells in rows for each in numbers)
     sign = layout.decimal_sign or ("." if separator == "," else detected_decimal_sign(filled))
     missing = frozenset(layout.missing)
+    texts = {each.name: [_cell(cells, each.place) for _, cells in rows] for each in words}
+    directions = [_word(cells, each) for each in numbers for _, cells in rows if each.name == DIRECTION_COLUMN]
     return RunTable(
         columns={each.name: _in_si(path, line, each, rows, sign, missing) for each in numbers},
-        texts={each.name: [_cell(cells, each.place) for _, cells in rows] for each in words},
+        texts=texts | ({f"{DIRECTION_COLUMN}_word": directions} if any(directions) else {}),
         lines=[number for number, _ in rows],
         caveats=_left_out_caveat(left_out),
     )
@@ -197,6 +199,8 @@ def _in_si(
     path: Path, line: int, column: _Column, rows: Sequence[NumberedCells], sign: str, missing: frozenset[str]
 ) -> Floats:
     """Numbers of a column in SI, NaN where a cell is empty."""
+    if column.name == DIRECTION_COLUMN and any(_word(cells, column) for _, cells in rows):
+        return _angles(path, line, column, rows, sign, missing)
     source = column.source
     unit = quantities()[column.name].unit
     stated = source.unit
@@ -211,6 +215,24 @@ def _in_si(
     gain, offset, _ = si_conversion(stated, unit=unit, name=f"{path}: line {line}: {column.shown}")
     numbers = np.array([_number(path, *row, column, sign, missing) for row in rows])
     return offset + gain * (numbers * source.gain + source.offset)
+
+
+def _angles(
+    path: Path, line: int, column: _Column, rows: Sequence[NumberedCells], sign: str, missing: frozenset[str]
+) -> Floats:
+    """Angles of a column that has words too, in rad: those of its words, NaN for one along the normal or torsional."""
+    words = [_word(cells, column) for _, cells in rows]
+    others = [(number, cells) for (number, cells), word in zip(rows, words, strict=True) if not word]
+    angles = np.array([DIRECTION_WORDS.get(word, np.nan) for word in words])
+    if any(_cell(cells, column.place) not in ("", *missing) for _, cells in others):
+        angles[[not word for word in words]] = _in_si(path, line, column, others, sign, missing)
+    return angles
+
+
+def _word(cells: Sequence[str], column: _Column) -> str:
+    """Word for a direction in a cell; empty where it has none."""
+    word = _cell(cells, column.place).lower()
+    return word if word in DIRECTION_WORDS else ""
 
 
 def _bracketed(label: str) -> str:

@@ -61,10 +61,10 @@ class Applicability:
 def applicability(rig: Rig, *, lubricant: bool = False) -> Applicability:
     """Direction, bodies, lubricant and frequency of a rig against what predictions are learned from.
 
-    Refused are a vibration of two components, and soft bodies: polymers, rubber, felt, skin, foam,
-    an effective modulus below 10 GPa where not both materials are named, or a friction model of soft bodies. A
-    coefficient of friction below 0.15 of metals, or of hard bodies without names, counts as that of a lubricated
-    contact.
+    Refused are a vibration along the normal and within the plane at once, and soft bodies: polymers, rubber, felt,
+    skin, foam, an effective modulus below 10 GPa where not both materials are named, or a friction model of soft
+    bodies. A coefficient of friction below 0.15 of metals, or of hard bodies without names, counts as that of a
+    lubricated contact.
     """
     lubricated = _lubrication(rig, lubricant=lubricant)
     tested = plane_caveats(rig.direction) if is_predicted(rig.direction) else ()
@@ -76,7 +76,7 @@ def applicability(rig: Rig, *, lubricant: bool = False) -> Applicability:
 
 
 def _in_plane(rig: Rig) -> str | None:
-    """Refusal of a vibration of two components."""
+    """Refusal of a vibration along the normal and within the plane at once."""
     fraction = getattr(rig.friction_model, "in_plane_fraction", 0.0)
     if not rig.direction.is_normal:
         return None if is_predicted(rig.direction) else within_plane_refusal(rig)

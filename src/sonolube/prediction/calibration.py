@@ -18,6 +18,7 @@ from sonolube.prediction.hierarchy import (
 )
 from sonolube.prediction.posterior import Population, published_population
 from sonolube.prediction.predictive import ratio_draws
+from sonolube.prediction.within_plane import plane_posterior, plane_rigs
 
 BLIND: Final = "decay length unknown"
 """Name of the way that predicts: nothing enters that a user would not have before a test."""
@@ -166,6 +167,17 @@ def calibrations() -> tuple[Calibration, ...]:
 def blind_calibration(groups: tuple[tuple[str, ...], ...] = ()) -> Calibration:
     """Calibration of the prediction with nothing that a user would not have before a test."""
     return population_calibration(BLIND, published_population(), published_rigs(), groups=groups)
+
+
+@cache
+def plane_calibration() -> Calibration:
+    """Calibration within the plane of contact: each published point, by the others there and those along the normal."""
+    predictions = [
+        one
+        for place, rig in enumerate(plane_rigs())
+        for one in _unseen(rig, ratio_draws(plane_posterior(without=(place,)), rig.at, count=_DRAWS))
+    ]
+    return Calibration(name="within the plane", predictions=tuple(predictions))
 
 
 def mean_ratio_calibration(groups: tuple[tuple[str, ...], ...] = ()) -> Calibration:

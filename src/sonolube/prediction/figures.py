@@ -10,7 +10,13 @@ import numpy as np
 from sonolube.charts import Axis, Band, Chart, Line, Panel, Part, Points, Rule, draw_chart
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, MARKERS, ReportFigure, subplots
-from sonolube.prediction.calibration import Calibration, blind_calibration, calibrations, mean_ratio_calibration
+from sonolube.prediction.calibration import (
+    Calibration,
+    blind_calibration,
+    calibrations,
+    mean_ratio_calibration,
+    plane_calibration,
+)
 from sonolube.prediction.evidence import Conditions, TestedRig, published_rigs
 from sonolube.prediction.hierarchy import LEVELS, PROBABILITIES, central_interval
 from sonolube.prediction.posterior import Posterior, published_population
@@ -245,6 +251,18 @@ def blind_caption() -> str:
         f" to {high:.3f} (95 %, bootstrap over sets){verdict}. Median width of the 80 % interval"
         f" {blind.median_width:.2f} (mean ratio {mean.median_width:.2f}). The form of the model was chosen after the"
         " errors were known."
+    )
+
+
+def plane_caption() -> str:
+    """Headline of the blind protocol within the plane of contact: how far it was tested, and what the points say."""
+    found = plane_calibration()
+    count, inside = len(found.predictions), [found.covered(probability) for probability in PROBABILITIES]
+    return (
+        f"Within the plane of contact it was tested with {count} published points along the sliding, and across, at an"
+        f" angle, of a ring and of an ellipse with none. {inside[0]}, {inside[1]} and {inside[2]} of {count} lie within"
+        f" the 50, 80 and 95 % intervals, which judges no coverage. CRPS {found.crps:.3f}, median width of the 80 %"
+        f" interval {found.median_width:.2f}."
     )
 
 

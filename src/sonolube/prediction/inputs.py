@@ -9,14 +9,14 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, Integers
 from sonolube.errors import InvalidInput
-from sonolube.measurement.measured_runs import checked_ratios, copies_caveat, run_caveats, setting
+from sonolube.measurement.measured_runs import checked_ratios, copies_caveat, direction_words, run_caveats, setting
 from sonolube.prediction.evidence import REFERENCE_DECAY_LENGTH, Conditions, TestedRig, UncertainConditions
 from sonolube.prediction.posterior import Posterior, learned
 from sonolube.prediction.within_plane import NO_LENGTH_ERROR, is_predicted, within_plane
 from sonolube.rig import Distribution, FrictionPoint, ResolvedRig, Rig, friction_point
 from sonolube.rig.amplitude_source import AMPLITUDE_ERROR
 from sonolube.rig.resolved_rig import resolved_rig
-from sonolube.rig.vibration_direction import NORMAL, VibrationDirection
+from sonolube.rig.vibration_direction import NORMAL, VibrationDirection, require_same_direction
 from sonolube.text.units import format_si
 from sonolube.validation.run_conditions import known_amplitudes, pooled_scatter
 from sonolube.vocabulary import quantity
@@ -187,8 +187,9 @@ def within_plane_refusal(rig: Rig) -> str:
             " predict or friction, which say how far it was tested, or fit own runs"
         )
     return (
-        f"{rig.title}: a prediction takes one component of vibration, but this one is {rig.direction.text}; use"
-        " friction, which gives the theory, or fit own runs"
+        f"{rig.title}: no prediction of a vibration along the normal and within the plane at once, whose phase decides"
+        f" and of which no one law has the tested limits, but this one is {rig.direction.text}; use friction, which"
+        " gives the theory, or fit own runs"
     )
 
 
@@ -312,6 +313,7 @@ def own_runs(runs: "xr.Dataset", inputs: RigInputs, *, title: str) -> OwnRuns:
         raise InvalidInput(f"{title}: {count} runs; at most {_MAX_RUNS} update a prediction: average repeats")
     ratio, copies = checked_ratios(runs, title=title), copies_caveat(runs)
     _require_direction(setting(runs, "vibration_direction", np.nan), inputs.direction, title=title)
+    require_same_direction(direction_words(runs), inputs.direction, title=title)
     amplitude, speed = _amplitudes(runs, inputs), setting(runs, "sliding_speed", inputs.sliding_speed)
     for name, values in (("vibration_amplitude", amplitude), ("sliding_speed", speed)):
         if not np.all(values > 0):

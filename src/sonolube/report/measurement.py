@@ -293,6 +293,7 @@ def _sheet_object(sheet: Sheet) -> dict[str, Any]:
         "tables": {table.name: _table_object(table) for table in sheet.tables},
         "caveats": list(sheet.caveats),
         "not_found": list(sheet.not_found),
+        **({"rig_entries": dict(sheet.rig_entries)} if sheet.rig_entries else {}),
     }
 
 

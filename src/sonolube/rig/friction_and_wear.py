@@ -328,6 +328,10 @@ def decay_length_caveat(rig: Rig | ResolvedRig, *, vibration_amplitude: float | 
 
 def resting_caveats(resolved: ResolvedRig, *, vibration_amplitude: float | None = None) -> tuple[str, ...]:
     """Caveats of the contact of a rig under its load, that of its decay length included."""
+    if not resolved.separation > 0:
+        return (
+            "the load presses the mean planes of this roughness together: friction is that of the soft layer alone",
+        )
     caveat = decay_length_caveat(resolved, vibration_amplitude=vibration_amplitude)
     own = contact_caveats(resolved.rig.contact, separation=resolved.separation)
     return (*own, *(() if caveat is None else (caveat,)))

@@ -13,6 +13,7 @@ from sonolube.models.contact import ExponentialHeights, RoughContact
 from sonolube.models.contact.rough import decay_length, normal_force, normal_stiffness, separation, separation_range
 from sonolube.models.dynamics import ExponentialGap, GapLaw, StartUpRamp, TabulatedGap, contact_receptance
 from sonolube.models.friction.models import FrictionModel
+from sonolube.models.friction.models.soft_layer import SoftLayerModel
 from sonolube.rig import amplitude_source
 from sonolube.rig.driven_rig import DrivenRig, DriveVoltage, actuator_capacitance, driven_rig
 from sonolube.rig.record import AMPLITUDE_SOURCES, AmplitudeSource, Rig
@@ -177,9 +178,9 @@ def resolved_vibration(resolved: ResolvedRig) -> amplitude_source.ResolvedVibrat
 
 
 def rest_separation(rig: Rig) -> float:
-    """Separation of a rig's surfaces at rest; a load that leaves none is refused. [m]"""
+    """Separation of a rig's surfaces at rest; a load that leaves none is refused, but on a soft layer. [m]"""
     gap = float(separation(rig.contact, normal_load=rig.normal_load))
-    if gap <= 0:
+    if gap <= 0 and not isinstance(rig.friction_model, SoftLayerModel):
         raise OutsideRange(
             f"contact.normal_load {rig.normal_load:g} N leaves no separation between the surfaces (d = {gap:.3g} m): "
             "lower the load or enlarge contact.nominal_area"

@@ -214,7 +214,7 @@ def response_curve_chart(rig: Rig, result: RigResponseCurve) -> Chart:
         inside = scale * result.backbone.frequency
         shown = (inside >= ends[0]) & (inside <= ends[1])
         height = 1e6 * result.backbone.vibration_amplitude
-        above.append(Line(x=inside[shown], y=height[shown], label="backbone", colour="0.6", dash=3))
+        above.append(Line(x=inside[shown], y=height[shown], label="backbone", colour="0.7"))
     above += _branch(parameter, amplitude, result)
     panels = [Panel(x=x, y=Axis(label="Amplitude", unit="µm", lowest=0.0), parts=tuple(above))]
     if not np.isnan(result.friction_ratio).all():

@@ -152,11 +152,11 @@ class VibrationDirection:
 
     def normal_part(self) -> float:
         """Amplitude along the normal over that of the main component. []"""
-        return float(abs(self._components()[0]))
+        return float(abs(self.components()[0]))
 
     def within_plane(self, motion: ContactMotion, *, vibration_amplitude: float) -> ContactMotion:
         """Motion of the gap by the normal part, at its widest at the first phase, with the parts within the plane."""
-        normal, *plane = self._components()
+        normal, *plane = self.components()
         turn = abs(normal) / normal if normal else 1.0
         phases = np.exp(2j * pi * np.arange(motion.displacement.size) / motion.displacement.size)
         along, across = (_oscillation(vibration_amplitude * turn * part * phases, part) for part in plane)
@@ -181,7 +181,7 @@ class VibrationDirection:
             for angle, weight in zip(angles.tolist(), weights.tolist(), strict=True)
         ]
 
-    def _components(self) -> tuple[complex, complex, complex]:
+    def components(self) -> tuple[complex, complex, complex]:
         """Complex amplitudes along the normal, along and across the sliding over that of the main component."""
         angle = self.vibration_direction or 0.0
         found = {
@@ -192,6 +192,15 @@ class VibrationDirection:
         if self.second_direction is not None:
             found[self.second_direction] += self.second_fraction * np.exp(-1j * self.second_phase)
         return found["normal"], found["along"], found["across"]
+
+
+def require_same_direction(words: frozenset[str], direction: VibrationDirection, *, title: str) -> None:
+    """Refuse runs whose words, "normal" or "torsional", are of another direction than that of their rig."""
+    other = sorted(words - {direction.direction})
+    if other:
+        raise InvalidInput(
+            f"{title}: vibrates {direction.text}; leave out runs with the direction {' or '.join(other)}"
+        )
 
 
 NORMAL: Final = VibrationDirection()

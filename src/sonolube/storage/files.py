@@ -79,16 +79,19 @@ class UnfinishedFile(io.FileIO):
             self.close()
 
 
-def write_atomically(path: Path, content: bytes | str) -> Path:
-    """Write a file atomically: readers get either the old content or the new one, never a part of it."""
-    with unfinished_file(path) as file:
+def write_atomically(path: Path, content: bytes | str, *, is_private: bool = False) -> Path:
+    """Write a file atomically: readers get either the old content or the new one, never a part of it.
+
+    A private one that is new can be read by its owner alone.
+    """
+    with unfinished_file(path, mode=0o600 if is_private else 0o666) as file:
         file.write(content.encode() if isinstance(content, str) else content)
         file.complete()
     return path
 
 
 @contextmanager
-def unfinished_file(path: Path) -> Iterator[UnfinishedFile]:
+def unfinished_file(path: Path, *, mode: int = 0o666) -> Iterator[UnfinishedFile]:
     """Provide a file that replaces another when its method `complete` is called, and is removed otherwise.
 
     Open for writing and reading; libraries that write to a file object take it.
@@ -96,7 +99,7 @@ def unfinished_file(path: Path) -> Iterator[UnfinishedFile]:
     target = resolved_target(path)
     with refused_as(path):
         target.parent.mkdir(parents=True, exist_ok=True)
-        mode = stat.S_IMODE(target.stat().st_mode) if target.exists() else 0o666
+        mode = stat.S_IMODE(target.stat().st_mode) if target.exists() else mode
     with _unfinished(path, target.parent, mode) as file:
         yield file
 

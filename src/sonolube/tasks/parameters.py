@@ -6,7 +6,7 @@ from pathlib import Path
 from types import NoneType, UnionType
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol, TypeAlias, TypedDict, Union, get_args, get_origin
 
-from sonolube.tasks.files import InputFile, NamedBytes
+from sonolube.tasks.files import InputFile, NamedBytes, file_path
 from sonolube.tasks.progress import Cancelled, Progress
 from sonolube.vocabulary import quantities
 
@@ -98,10 +98,10 @@ class DoorParameter:
     files: str = ""
 
 
-RigSource: TypeAlias = "Rig | HasRig | str | Path"
+RigSource: TypeAlias = "Rig | HasRig | InputFile"
 """A rig, an answer that has one, or the path of a file."""
 
-OptionalRigSource: TypeAlias = "Rig | HasRig | str | Path | None"
+OptionalRigSource: TypeAlias = "Rig | HasRig | InputFile | None"
 OwnRuns: TypeAlias = "InputFile | xr.Dataset"
 """Measured runs: a table, a query such as "catalogue:material=brass", or the dataset of `sl.read_runs`."""
 
@@ -146,12 +146,12 @@ Sizes = Annotated[
 
 
 def rig_of(source: RigSource) -> "Rig":
-    """Rig of a task: itself, that of an answer such as of `new`, or read where the path of its file is given."""
+    """Rig of a task: itself, that of an answer such as of `new`, or read where its file is given."""
     from sonolube.rig import Rig, read_rig
 
     if isinstance(source, Rig):
         return source
-    return read_rig(source) if isinstance(source, str | Path) else source.rig
+    return read_rig(file_path(source)) if isinstance(source, InputFile) else source.rig
 
 
 def optional_rig(source: OptionalRigSource) -> "Rig | None":

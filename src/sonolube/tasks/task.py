@@ -27,6 +27,7 @@ _DOORS = {
     "keep": "Folder for what is computed so far, from which an interrupted task continues.",
     "operator": "Called with each prompt to the operator; returns whether it is done.",
     "control": "Takes requests of other threads to stop, pause and resume.",
+    "watcher": "Shown set points, blocks and events of the run, as `sonolube.laboratory.RunWatcher`.",
 }
 
 

@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.measured_runs import checked_ratios, copies_caveat, run_caveats, setting
+from sonolube.measurement.measured_runs import checked_ratios, copies_caveat, direction_words, run_caveats, setting
 from sonolube.models.contact import RoughContact
 from sonolube.rig import Rig, steady_vibration
+from sonolube.rig.vibration_direction import NORMAL, require_same_direction
 from sonolube.text.units import format_si
 
 if TYPE_CHECKING:
@@ -167,6 +168,8 @@ def _inputs(runs: "xr.Dataset", rig: Rig | None) -> dict[str, Floats]:
     load = setting(runs, "normal_load", np.nan if rig is None else rig.normal_load)
     dry = setting(runs, "intrinsic_friction_force", np.nan) / load
     angle = None if rig is None else rig.direction.angle
+    words = direction_words(runs)
+    require_same_direction(words, NORMAL if rig is None else rig.direction, title="runs" if rig is None else rig.title)
     coefficient = float(np.nanmean(dry)) if np.any(np.isfinite(dry)) else np.nan
     if rig is not None and not isfinite(coefficient):
         coefficient = rig.friction_coefficient

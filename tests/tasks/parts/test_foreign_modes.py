@@ -14,6 +14,7 @@ from sonolube.errors import InvalidInput
 from sonolube.rig import read_rig
 from sonolube.rig.driven_rig import driven_rig
 from sonolube.tasks.files import NamedBytes
+from sonolube.text.units import to_si
 
 Program = Callable[..., Any]
 
@@ -103,6 +104,55 @@ def test_a_table_of_other_columns_simulates_as_the_modes_it_was_made_of(tmp_path
         assert float(again[name]) == approx(float(before[name]), rel=1e-6)
     by_voltage = float(sl.simulate(RIGS / "collar.toml")["vibration_amplitude"])  # without the modes
     assert float(before["vibration_amplitude"]) != approx(by_voltage, rel=0.01)
+
+
+def _receptance(content: dict[str, Any], frequency: float, of: str) -> float:
+    """Displacement of the contact per force on it or per voltage, without damping, by the modes of an answer."""
+    omega, turning = 2 * np.pi * np.array(content["natural_frequency"]), 2 * np.pi * frequency
+    tip, other = np.array(content["contact_participation"]), np.array(content[of])
+    return float(np.sum(tip * other / (omega**2 - turning**2)))
+
+
+@mark.parametrize("frequency", [5e3, 15e3, 30e3, 37e3])
+def test_static_values_make_a_few_modes_of_a_bar_respond_as_all_of_them_do(frequency: float) -> None:
+    # a free bar of 0.3 kg, half a wave at 25 kHz: EA = m omega_1^2 L/pi^2; by inertia relief its end yields by L/3EA,
+    # and 12 N/V between x = 0 and the middle, which stretch that half, move it by an eighth of 12 N L/EA against +x
+    L, stiffness = 0.1, 0.3 * (2 * np.pi * 25e3) ** 2 * 0.1 / np.pi**2
+    statics: dict[str, Any] = {
+        "static_compliance": L / (3 * stiffness),
+        "displacement_per_volt": -12 * L / (8 * stiffness),
+    }
+    content = {"from_file": NamedBytes("bar.frd", frd_text(**BAR).encode()), **ASKED, **UNITS}
+    few, corrected = (
+        tomllib.loads(str(*sl.modes(**content, **more).files().values())) for more in (dict[str, Any](), statics)
+    )
+    wave = np.pi * frequency / 25e3
+    exact = -np.cos(wave) / (wave / L * stiffness * np.sin(wave))  # of a free bar in closed form
+    order, root = np.arange(1, 20_000), np.sqrt(2 / 0.3)
+    shares = -((-1.0) ** order) * root * -12 * root * (1 - np.cos(order * np.pi / 2))
+    driven = float(np.sum(shares / ((2 * np.pi * 25e3 * order) ** 2 - (2 * np.pi * frequency) ** 2)))
+    for of, right in (("contact_participation", exact), ("drive_participation", driven)):
+        errors = [abs(_receptance(each, frequency, of) - right) for each in (few, corrected)]
+        assert errors[1] < 0.2 * errors[0]
+    (caveat,) = [each for each in sl.modes(**content).caveats() if "are left out" in each]
+    missing = L / (3 * stiffness) - sum(
+        (c / (2 * np.pi * f)) ** 2
+        for f, c in zip(few["natural_frequency"], few["contact_participation"], strict=True)
+        if f
+    )
+    told = to_si(caveat.split("about ")[1].split(" beside")[0], unit="m/N", name="compliance")
+    assert told == approx(missing, rel=0.05)
+    added = corrected["natural_frequency"][-1], corrected["clamped_capacitance"]
+    assert added[0] == approx(300e3)
+    assert to_si(added[1], unit="F", name="C") < 4e-9
+
+
+def test_static_values_that_the_modes_exceed_are_refused() -> None:
+    content = {"from_file": NamedBytes("bar.frd", frd_text(**BAR).encode()), **ASKED, **UNITS}
+    with raises(InvalidInput, match="static_compliance 1e-12 m/N must exceed"):
+        sl.modes(**content, static_compliance=1e-12, displacement_per_volt=0.0)
+    with raises(InvalidInput, match="belong together"):
+        sl.modes(**content, static_compliance=1e-6)
 
 
 @mark.parametrize(

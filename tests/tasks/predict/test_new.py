@@ -9,10 +9,18 @@ from pytest import approx, mark, raises
 
 import sonolube as sl
 from sonolube.errors import InvalidInput, UnknownName
+from sonolube.facts.materials import material
+from sonolube.models.contact import layer_normal_stiffness
+from sonolube.models.friction import SoftLayerModel
 from sonolube.tasks.files import NamedBytes
 
 KNOWN: dict[str, Any] = {"pin": "brass", "disc": "304", "load": "5 N", "speed": "0.2 m/s", "frequency": "20 kHz"}
 KNOWN |= {"amplitude": "3 um", "finish": "ground N6"}
+_LAYER = (
+    ("dynamic_modulus_ratio", "dynamic_modulus_ratio"),
+    ("layer_loss", "elastic_loss"),
+    ("layer_density", "density"),
+)
 
 
 def test_a_new_rig_is_that_of_the_command_and_predicts_with_its_own_materials(
@@ -70,6 +78,45 @@ def test_the_dataset_has_the_spread_of_what_nobody_measured() -> None:
 def test_arguments_are_refused_by_their_names(change: dict[str, Any], line: str) -> None:
     with raises(InvalidInput, match=line):
         sl.new(**KNOWN | change)
+
+
+@mark.parametrize("name", ["felt", "rubber", "pom", "skin", "webbing"])
+def test_a_soft_layer_runs_from_its_material_alone_and_marks_what_is_assumed(name: str) -> None:
+    soft = KNOWN | {"pin": name, "disc": "glass", "shape": "flat 20 mm"}
+    found = sl.new(**soft, layer_thickness="3 mm").rig
+    model, body = found.friction_model, material(name)
+    assert isinstance(model, SoftLayerModel)
+    of_class = material(body.family)
+    stated = {**of_class.properties, **body.properties}
+    assert (model.dynamic_modulus_ratio, model.layer_loss, model.layer_density) == approx(
+        (stated["dynamic_modulus_ratio"].value, stated["elastic_loss"].value, stated["density"].value), rel=1e-3
+    )
+    assert model.layer_thickness == approx(3e-3)
+    keys = ("friction.dynamic_modulus_ratio", "friction.layer_loss", "friction.layer_density")
+    assert all(stated[key].source in found.assumptions[f"friction.{own}"] for own, key in _LAYER)
+    assert all(key in found.uncertainty for key in keys[:2])
+    ratio = float(sl.friction(found)["friction_ratio"])
+    assert 0 <= ratio <= 1
+    quiet = found.replace("vibration.vibration_amplitude", "0.01 nm")
+    assert float(sl.friction(quiet)["friction_ratio"]) == approx(1.0, abs=1e-3)
+
+
+def test_a_thin_felt_is_as_stiff_as_its_oedometric_modulus_says() -> None:
+    felt = KNOWN | {"pin": "felt", "disc": "glass", "shape": "flat 60 mm"}
+    rig = sl.new(**felt, layer_thickness="0.5 mm").rig
+    model = rig.friction_model
+    assert isinstance(model, SoftLayerModel)
+    E, nu = material("felt").value("youngs_modulus"), 0.2
+    winkler = E * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) * np.pi * 0.03**2 / 0.5e-3
+    k = layer_normal_stiffness(model.layer(rig.contact), face_radius=0.03)
+    assert k == approx(winkler, rel=0.03)
+
+
+def test_a_thickness_of_a_hard_body_or_within_the_plane_is_refused() -> None:
+    with raises(InvalidInput, match=r"layer_thickness is of a soft body, and .* is none"):
+        sl.new(**KNOWN, layer_thickness="3 mm")
+    with raises(InvalidInput, match="a soft layer has no law for a vibration"):
+        sl.new(**KNOWN | {"pin": "felt"}, layer_thickness="3 mm", direction="along")
 
 
 def test_an_unknown_material_is_refused_with_the_nearest() -> None:

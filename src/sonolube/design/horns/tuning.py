@@ -22,15 +22,15 @@ from sonolube.models.fem import (
     mode_names,
     tuned_mode,
 )
-from sonolube.models.fem.mesh.element_order import change_order, determinant, jacobian_matrices
-from sonolube.models.fem.mesh.mesh import DIRECTIONS, shape_functions, simplex_quadrature
+from sonolube.models.fem.mesh.element_order import change_order
+from sonolube.models.fem.mesh.mesh import DIRECTIONS
 from sonolube.models.fem.mode_analysis import face_residual_compliance, mass_loaded_frequencies
-from sonolube.models.fem.results.nodal_fields import gauss_point_stress, nodal_average, von_mises_stress
+from sonolube.models.fem.results.nodal_fields import nodal_stress
+from sonolube.models.fem.results.sections import section_means, sign_changes
 from sonolube.models.fem.solver.modes import lanczos_modes, spectral_shift
 from sonolube.models.fem.solver.system import assemble_system, shift_invert_solver
 
 _ELEMENTS_ACROSS = 2.5  # in the first mesh, over the edge of a cube with the volume of the horn
-_SLICES = 48  # normal to the axis, over each of which the motion is averaged
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -181,19 +181,6 @@ def face_motion(model: Model, shape: Floats, face: str, axis: str) -> Floats:
     return np.asarray(shape[model.mesh.face_nodes(face), DIRECTIONS.index(axis)])
 
 
-def nodal_stress(model: Model, shape: Floats) -> Floats:
-    """Von Mises stress at the nodes, from stress components averaged over the adjacent elements.
-
-    `shape` has shape (n, 3).
-
-    In Pa for displacements in m.
-    """
-    at_corners = gauss_point_stress(model, shape)
-    return von_mises_stress(
-        np.stack([nodal_average(model.mesh, at_corners[:, :, component]) for component in range(6)], axis=-1)
-    )
-
-
 def _peak_stress(model: Model, shape: Floats, axis: str) -> float:
     """Greatest nodal von Mises stress per mean displacement of the working face, in Pa/m."""
     return float(nodal_stress(model, shape).max() / abs(face_motion(model, shape, f"+{axis}", axis).mean()))
@@ -229,13 +216,10 @@ def _asymmetry(mode: NamedMode, axis: str) -> float:
 
 def _node(mode: NamedMode, axis: str) -> float:
     """Distance from the driven face to the first sign change of the mean axial displacement of sections."""
-    z, u = section_motion(mode, axis)
-    sign_changes = np.flatnonzero(np.diff(np.sign(u)))
-    if not sign_changes.size:
+    nodes = sign_changes(*section_motion(mode, axis))
+    if not nodes.size:
         raise InvalidInput("this mode has no displacement node along the axis: tune an axial mode, such as axial 1")
-    k = int(sign_changes[0])
-    start = float(mode.model.mesh.nodes[:, DIRECTIONS.index(axis)].min())
-    return float(z[k] - u[k] * (z[k + 1] - z[k]) / (u[k + 1] - u[k])) - start
+    return float(nodes[0] - mode.model.mesh.nodes[:, DIRECTIONS.index(axis)].min())
 
 
 def section_motion(mode: NamedMode, axis: str) -> tuple[Floats, Floats]:
@@ -243,19 +227,7 @@ def section_motion(mode: NamedMode, axis: str) -> tuple[Floats, Floats]:
 
     Positions along the axis in m, and displacements there; both means over the volume of a thin slice.
     """
-    mesh, along = mode.model.mesh, DIRECTIONS.index(axis)
-    points, weights = simplex_quadrature(2 * mesh.order, corners=4)
-    value, gradient = shape_functions(mesh.order, points)
-    volume = determinant(jacobian_matrices(mesh.nodes[mesh.elements], gradient)) * weights
-    position, displacement = (field[mesh.elements, along] @ value for field in (mesh.nodes, mode.displacement))
-    edges = np.linspace(position.min(), position.max(), _SLICES + 1)
-    slices = np.clip(np.digitize(position, edges) - 1, 0, _SLICES - 1).ravel()
-    slice_volume = np.bincount(slices, volume.ravel(), minlength=_SLICES)
-    filled = slice_volume > 0
-    moments = [
-        np.bincount(slices, (values * volume).ravel(), minlength=_SLICES)[filled] for values in (position, displacement)
-    ]
-    return moments[0] / slice_volume[filled], moments[1] / slice_volume[filled]
+    return section_means(mode.model.mesh, mode.displacement[:, DIRECTIONS.index(axis)], axis=axis)
 
 
 def _neighbours(mode: NamedMode) -> tuple[tuple[str, float], ...]:

@@ -1,5 +1,13 @@
+from .edits import (
+    ProtocolField as ProtocolField,
+    ProtocolStep as ProtocolStep,
+    edited_protocol_text as edited_protocol_text,
+    protocol_fields as protocol_fields,
+    protocol_steps as protocol_steps,
+)
 from .quantity_text import exact_text as exact_text
 from .record import (
+    STEP_KINDS as STEP_KINDS,
     Acquire as Acquire,
     Check as Check,
     Drive as Drive,
@@ -15,6 +23,7 @@ from .record import (
 )
 from .text import (
     protocol_by_name_or_file as protocol_by_name_or_file,
+    protocol_faults as protocol_faults,
     protocol_from as protocol_from,
     protocol_names as protocol_names,
     protocol_path as protocol_path,

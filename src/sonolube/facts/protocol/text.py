@@ -1,7 +1,9 @@
 """Protocols as TOML text: read with every fault and its place, written; JSON schema; those of the dissertation."""
 
 import json
+import re
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
 
@@ -15,6 +17,7 @@ from sonolube.text.units import format_si
 
 _MAX_FAULTS: Final = 10  # that one refusal names
 _LONGEST_FAULT: Final = 300  # characters
+_STEP: Final = re.compile(r"step ([\d.]+):")
 
 
 def read_protocol(path: str | Path) -> Protocol:
@@ -64,6 +67,34 @@ def protocol_from(content: Mapping[str, Any]) -> Protocol:
         raise InvalidInput(_faults(refusal)) from None
     _require_within_limits(protocol)
     return protocol
+
+
+def protocol_faults(content: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
+    """Faults of the content of a file of a protocol, each with the key of its entry.
+
+    Parameters
+    ----------
+    content : mapping
+        As TOML gives it.
+
+    Returns
+    -------
+    tuple of (str, str)
+        Such as ("steps.4.2.duration", "step 4.2: duration: missing"); empty where the content is a protocol.
+    """
+    try:
+        require_plain_content(content)
+        _require_within_limits(Protocol.model_validate(content))
+    except ValidationError as refusal:
+        complaints = refusal.errors(include_url=False, include_context=False, include_input=False)
+        return tuple(
+            (_key(each["loc"]), f"{_place(each['loc'])}{_reason(each['type'], each['msg'])}"[:_LONGEST_FAULT])
+            for each in complaints[:_MAX_FAULTS]
+        )
+    except InvalidInput as refusal:
+        step = _STEP.match(str(refusal))
+        return ((f"steps.{step[1]}" if step else "", str(refusal)),)
+    return ()
 
 
 def protocol_schema() -> dict[str, Any]:
@@ -148,6 +179,13 @@ def _place(parts: Sequence[str | int]) -> str:
     whole = ["steps"] if inside else []
     step = [f"step {'.'.join(numbers)}"] if numbers else []
     return "".join(f"{each}: " for each in (*step, *keys, *whole))
+
+
+def _key(parts: Sequence[str | int]) -> str:
+    """Key of the entry of a fault, such as "steps.4.2.duration"; of a list, that of the whole."""
+    numbers = [str(part + 1) for before, part in pairwise(("", *parts)) if isinstance(part, int) and before == "steps"]
+    named = [part for part in parts if isinstance(part, str) and part != "steps" and part not in STEP_KINDS]
+    return ".".join(["steps", *numbers, *named] if numbers else named)
 
 
 def _reason(kind: str, message: str) -> str:

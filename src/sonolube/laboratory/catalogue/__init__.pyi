@@ -6,4 +6,9 @@ from .index import (
     query_from as query_from,
     query_runs as query_runs,
 )
-from .measured import CATALOGUE_PREFIX as CATALOGUE_PREFIX, catalogued_runs as catalogued_runs, take_in as take_in
+from .measured import (
+    CATALOGUE_PREFIX as CATALOGUE_PREFIX,
+    catalogued_runs as catalogued_runs,
+    level_rows as level_rows,
+    take_in as take_in,
+)

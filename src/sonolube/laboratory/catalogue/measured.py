@@ -141,20 +141,39 @@ def catalogued_runs(text: str) -> "xr.Dataset":
     found = query_runs(parent, query_from(values))
     if not found.entries:
         raise InvalidInput(f"{text}: finds none of {found.of} runs in {parent}; sonolube lab runs {parent} lists them")
-    rows: list[list[str]] = []
-    refused = list(found.caveats)
-    for entry in found.entries:
-        try:
-            rows += _rows(entry, refused)
-        except SonolubeError as failure:
-            refused.append(f"{entry.summary.folder.name}: left out: {failure}")
-    if not rows:
+    rows, left_out = level_rows([entry.summary.folder for entry in found.entries])
+    refused = [*found.caveats, *left_out]
+    if len(rows) == 1:
         raise InvalidInput(f"{text}: no friction can be measured: {refused[-1]}")
-    runs = runs_of_rows(Path(text), [list(_HEADER), *rows])
+    runs = runs_of_rows(Path(text), rows)
     caveats = [line for line in (str(runs.attrs.get("caveats", "")), *refused) if line]
     return runs.assign_attrs(
         title=f"{text.removeprefix(CATALOGUE_PREFIX) or 'all runs'}, in %", caveats="\n".join(caveats)
     )
+
+
+def level_rows(folders: Sequence[Path]) -> tuple[list[list[str]], list[str]]:
+    """Rows of a table of runs, a row for each level of the voltage in each run, under a row of headings.
+
+    Parameters
+    ----------
+    folders : sequence of Path
+        Of runs.
+
+    Returns
+    -------
+    list of list of str
+        The headings first; cells that are not known are empty.
+    list of str
+        What was left out, a line each.
+    """
+    rows, left_out = [list(_HEADER)], list[str]()
+    for folder in folders:
+        try:
+            rows += _rows(catalogue_entry(folder), left_out)
+        except SonolubeError as failure:
+            left_out.append(f"{folder.name}: left out: {failure}")
+    return rows, left_out
 
 
 def _conditions(text: str) -> tuple[Path, dict[str, list[str]]]:

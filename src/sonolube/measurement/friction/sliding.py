@@ -151,9 +151,17 @@ class SlidingSteps:
 
 
 def sliding_steps(
-    t: Floats, f: Floats, u: Floats, v: Floats | None, *, shortest_step: float, settling_time: float, tolerance: float
+    t: Floats,
+    f: Floats,
+    u: Floats,
+    v: Floats | None,
+    *,
+    shortest_step: float,
+    settling_time: float,
+    tolerance: float,
+    stated: Floats | None = None,
 ) -> SlidingSteps:
-    """Steps that last long enough, from time, force, voltage and, where it is known, the speed.
+    """Steps that last long enough, from time, force, voltage, the speed where it is known, and their numbers if stated.
 
     See Also
     --------
@@ -163,7 +171,7 @@ def sliding_steps(
     require_non_negative(settling_time=settling_time)
     threshold = voltage_threshold(voltage_peak_to_peak=u, tolerance=tolerance)
     least = max(shortest_step, 2 * settling_time)
-    held = _constant_levels(t, u, threshold, shortest_step)
+    held = _constant_levels(t, u, threshold, shortest_step) if stated is None else _stated_ranges(stated)
     if v is not None:
         change = tolerance * float(np.nanmax(np.abs(v)))
         held = _common(held, _constant_levels(t, v, change, shortest_step))
@@ -202,6 +210,12 @@ def _force_before_sliding(t: Floats, f: Floats, rest: Mask, step: tuple[int, int
     moving = np.flatnonzero(np.abs(medians) > level)
     begin = (int(moving[-1]) + 2) * size if moving.size else 0
     return np.asarray(force[begin:][np.isfinite(force[begin:])])
+
+
+def _stated_ranges(stated: Floats) -> list[tuple[int, int]]:
+    """Sample ranges of one number, those of 0 left out."""
+    edges = [0, *np.flatnonzero(np.diff(stated)) + 1, stated.size]
+    return [(int(first), int(last)) for first, last in pairwise(edges) if stated[first]]
 
 
 def _common(one: list[tuple[int, int]], other: list[tuple[int, int]]) -> list[tuple[int, int]]:

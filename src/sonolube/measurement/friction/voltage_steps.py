@@ -120,6 +120,7 @@ def friction_at_voltage_steps(
     revolutions: ArrayLike | None = None,
     sliding_speed: ArrayLike | None = None,
     harmonics: int = 3,
+    stated_steps: ArrayLike | None = None,
 ) -> tuple[VoltageStep, ...]:
     r"""Mean friction, friction reduction and stick-slip at each step of a voltage.
 
@@ -145,6 +146,8 @@ def friction_at_voltage_steps(
         told by the force at the steps without voltage, see `at_rest`. [m/s]
     harmonics : int
         Number of harmonics of the rotation that are taken off.
+    stated_steps : array_like, shape (samples,), or None
+        Number of the step at each sample, 0 for none, in place of the steps of the voltage.
 
     Returns
     -------
@@ -191,7 +194,9 @@ def friction_at_voltage_steps(
     """
     t, f, u = require_time_series(time=time, friction_force=friction_force, voltage_peak_to_peak=voltage_peak_to_peak)
     v = None if sliding_speed is None else require_time_series(time=time, sliding_speed=sliding_speed)[1]
-    found = sliding_steps(t, f, u, v, shortest_step=shortest_step, settling_time=settling_time, tolerance=tolerance)
+    stated = None if stated_steps is None else require_finite(stated_steps=stated_steps)
+    rules = {"shortest_step": shortest_step, "settling_time": settling_time, "tolerance": tolerance}
+    found = sliding_steps(t, f, u, v, stated=stated, **rules)
     parts = sampled_parts(found.settled, time=t, friction_force=f)
     turned = None if revolutions is None else _of_parts(f, require_finite(revolutions=revolutions), found.settled)
     places = None if v is None else _of_parts(f, _slid(t, v), found.settled)

@@ -1,7 +1,7 @@
 """Participation of a contact and a stack in modes of another program, by nodes or points of its mesh."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -206,6 +206,115 @@ def modal_lists(
                 f"the {what} in none of the {int(elastic.sum())} elastic modes; check places and direction"
             )
     return lists
+
+
+_RESIDUAL_FREQUENCY = 4.0  # of the mode of all truncated ones, over the highest of the file
+_LAST = 0.5  # of the elastic modes, by whose upper part those above are estimated
+
+
+def with_static_correction(
+    lists: Mapping[str, Floats], *, static_compliance: float, displacement_per_volt: float, clamped_capacitance: float
+) -> tuple[dict[str, Floats], float]:
+    r"""Modes with one more for the static share of all truncated ones, and the capacitance with that held too.
+
+    Parameters
+    ----------
+    lists : mapping of str to ndarray, shape (m,)
+        Columns of a file of modes for a modal mass of 1 kg.
+    static_compliance : float
+        Displacement of the contact per static force on it, by all modes but the rigid ones. [m/N]
+    displacement_per_volt : float
+        Displacement of the contact per static voltage, by all modes but the rigid ones. [m/V]
+    clamped_capacitance : float
+        With the modes of the file held. [F]
+
+    Returns
+    -------
+    dict of str to ndarray, shape (m + 1,)
+    float
+        In F.
+
+    Raises
+    ------
+    InvalidInput
+        If the modes alone are as compliant, or the correction has more capacitance than is held.
+
+    Notes
+    -----
+    .. math::
+
+        c_r = c_s - \sum_k \frac{\phi_k^2}{\omega_k^2}, \qquad
+        u_r = u_s - \sum_k \frac{\phi_k b_k}{\omega_k^2}, \qquad
+        \phi_r = \omega_r \sqrt{c_r}, \quad b_r = \omega_r u_r/\sqrt{c_r}
+
+    with a frequency four times that of the highest mode, so that the added mode is static within 2 % up to half of that
+    highest one. The share of the truncated modes in the capacitance, (u_r)^2/c_r by the added one, moves to it. Of a
+    free body the static values are those with the inertia of its rigid motions (inertia relief).
+    """
+    omega = 2 * np.pi * lists["natural_frequency"]
+    elastic = omega > 0
+    drive, contact = lists["drive_participation"][elastic], lists["contact_participation"][elastic]
+    kept = kept_compliance(lists)
+    c_r = float(require_finite(static_compliance=static_compliance)) - kept
+    if not c_r > 0:
+        raise InvalidInput(
+            f"static_compliance {static_compliance:.4g} m/N must exceed {kept:.4g} m/N, that of the modes of the file;"
+            " of a free body it is without rigid motions, by inertia relief"
+        )
+    u_r = float(require_finite(displacement_per_volt=displacement_per_volt))
+    u_r -= float(np.sum(drive * contact / omega[elastic] ** 2))
+    left = clamped_capacitance - u_r**2 / c_r
+    if not left > 0:
+        raise InvalidInput(
+            f"displacement_per_volt leaves {u_r:.4g} m/V to the truncated modes, whose capacitance {u_r**2 / c_r:.4g} F"
+            f" exceeds clamped_capacitance {clamped_capacitance:.4g} F; it is positive away from the other body"
+        )
+    highest = _RESIDUAL_FREQUENCY * float(omega.max())
+    added = {
+        "natural_frequency": highest / (2 * np.pi),
+        "damping_ratio": float(lists["damping_ratio"][np.argmax(omega)]),
+        "drive_participation": highest * u_r / np.sqrt(c_r),
+        "contact_participation": highest * np.sqrt(c_r),
+    }
+    return {name: np.append(values, added[name]) for name, values in lists.items()}, left
+
+
+def kept_compliance(lists: Mapping[str, Floats]) -> float:
+    """Static compliance of the contact by the elastic modes of a file, for a modal mass of 1 kg. [m/N]"""
+    omega = 2 * np.pi * lists["natural_frequency"]
+    elastic = omega > 0
+    return float(np.sum((lists["contact_participation"][elastic] / omega[elastic]) ** 2))
+
+
+def truncated_compliance(lists: Mapping[str, Floats]) -> float:
+    r"""Estimated static compliance of the contact by the modes above those of a file. [m/N]
+
+    Parameters
+    ----------
+    lists : mapping of str to ndarray, shape (m,)
+        Columns of a file of modes for a modal mass of 1 kg.
+
+    Returns
+    -------
+    float
+        NaN with fewer than two elastic modes.
+
+    Notes
+    -----
+    .. math:: c_r \approx \frac{\overline{\phi^2}}{\Delta\omega\, (\omega_n + \Delta\omega/2)}
+
+    if the modes above go on with the mean square participation and the mean distance of the upper half of those below,
+    which a slender bar does. Bodies that are wide beside the wavelength have more modes, and a larger sum.
+    """
+    omega = 2 * np.pi * lists["natural_frequency"]
+    order = np.argsort(omega)
+    order = order[omega[order] > 0]
+    if order.size < 2:
+        return float("nan")
+    last = order[int(_LAST * (order.size - 1)) :]
+    spacing = float(omega[last[-1]] - omega[last[0]]) / (last.size - 1)
+    square = float(np.mean(lists["contact_participation"][last] ** 2))
+    return square / (spacing * (float(omega[last[-1]]) + spacing / 2)) if spacing > 0 else float("nan")
 
 
 def _filled(values: Floats, value: float | None, *, needed: NDArray[np.bool_], name: str, text: str) -> Floats:

@@ -275,7 +275,7 @@ def _height_map(
     if reading.states_unit and length_unit is not None:
         raise InvalidInput(f"{path}: {reading.format_name} states its unit; leave length_unit out")
     if length_unit is None and not (reading.states_unit or reading.metres_by_default):
-        raise InvalidInput(f"{path}: {reading.format_name} does not state its unit; {_UNIT_ADVICE}")
+        raise InvalidInput(f"{path}: {reading.format_name} does not state its unit; {_UNIT_ADVICE}", key="length_unit")
     unit = convert(1.0, from_unit=length_unit, to_unit="m") if length_unit else 1.0
     try:
         step_x, step_y = _spacings(reading, unit, spacing_x=spacing_x, spacing_y=spacing_y)
@@ -286,7 +286,7 @@ def _height_map(
             height = unit * reading.height
         return HeightMap(height=height, spacing_x=step_x, spacing_y=step_y)
     except InvalidInput as failure:
-        raise InvalidInput(f"{path}: {failure}") from None
+        raise InvalidInput(f"{path}: {failure}", key=failure.key) from None
 
 
 def _spacings(
@@ -298,5 +298,5 @@ def _spacings(
             raise InvalidInput(f"{reading.format_name} states its spacing; leave spacing_x and spacing_y out")
         return unit * reading.spacing_x, unit * reading.spacing_y
     if spacing_x is None or spacing_y is None:
-        raise InvalidInput(f"the distance of pixels is not in the file; {_SPACING_ADVICE}")
+        raise InvalidInput(f"the distance of pixels is not in the file; {_SPACING_ADVICE}", key="spacing")
     return spacing_x, spacing_y

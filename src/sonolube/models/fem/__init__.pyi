@@ -61,7 +61,7 @@ from .parts.transducers import (
 from .results.nodal_fields import (
     gauss_point_stress as gauss_point_stress,
     interpolate_at_points as interpolate_at_points,
-    nodal_average as nodal_average,
+    nodal_stress as nodal_stress,
     von_mises_stress as von_mises_stress,
     vtu_text as vtu_text,
 )

@@ -2,7 +2,7 @@
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,6 +14,7 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.friction.loops import friction_work
 from sonolube.measurement.friction.rotation import MotorCalibration
 from sonolube.measurement.friction.sliding import NOISE_VOLTAGE, Mask, stretches
+from sonolube.measurement.friction.stated_parts import STATED_STEP, StatedParts, with_stated_parts
 from sonolube.measurement.friction.windows import (
     DEFAULT_WINDOW_DURATION,
     SteadyStateOnset,
@@ -67,6 +68,8 @@ class FrictionSettings:
         Turns per time, to take away what the disc's wobble adds. [1/s]
     motor : MotorCalibration or None
         To tell friction by the motor's current.
+    parts : StatedParts
+        Part, rests and steps as stated, in place of those found.
 
     Raises
     ------
@@ -79,6 +82,7 @@ class FrictionSettings:
     sliding_speed: float | None = None
     rotation_speed: float | None = None
     motor: MotorCalibration | None = None
+    parts: StatedParts = field(default_factory=StatedParts)
 
     def __post_init__(self) -> None:
         speeds = {"sliding_speed": self.sliding_speed, "rotation_speed": self.rotation_speed}
@@ -88,14 +92,15 @@ class FrictionSettings:
 
 def friction_sheet(path: Path, *, settings: FrictionSettings) -> sheet.Sheet:
     """Friction in a recording: level, fluctuation, running-in, voltage steps, stick-slip, work and wobble."""
-    if path.is_file() and path.stat().st_size > _LARGE and recording_format_name(path) == TDMS:
+    is_whole = settings.parts == StatedParts()
+    if is_whole and path.is_file() and path.stat().st_size > _LARGE and recording_format_name(path) == TDMS:
         return _streamed(path, settings)
     return recording_sheet(read_recording(path, mapping=settings.mapping), title=path.name, settings=settings)
 
 
 def recording_sheet(recording: "xr.Dataset", *, title: str, settings: FrictionSettings) -> sheet.Sheet:
     """Friction in a recording that was read, as `friction_sheet`."""
-    motor = settings.motor
+    motor, recording = settings.motor, with_stated_parts(recording, settings.parts)
     sections = _sections(recording, settings) if motor is None else [_motor(recording, settings, motor)]
     sections.append(sheet.Sheet(caveats=recording_caveats(recording)))
     return sheet.joined(sections, title=title, source=recording_source(recording))
@@ -138,7 +143,8 @@ def _sections(recording: "xr.Dataset", settings: FrictionSettings) -> list[sheet
         windows = analyse_windows(recording, of=name, window_duration=settings.window_duration)
         return [_mean_of_all(recording, name), _windows(recording, windows, None)]
     whole, rest = recording, recorded_rest(recording)
-    recording = whole.assign(friction_force=whole["friction_force"].where(~rest)) if rest.any() else whole
+    left_out = rest | (whole[STATED_STEP].to_numpy() == 0) if STATED_STEP in whole else rest
+    recording = whole.assign(friction_force=whole["friction_force"].where(~left_out)) if left_out.any() else whole
     windows = analyse_windows(recording, of=name, window_duration=settings.window_duration)
     sections = [_level(whole, recording), *_rest_caveat(whole, rest)]
     steady = None
@@ -190,8 +196,9 @@ def _rest_caveat(recording: "xr.Dataset", rest: Mask) -> list[sheet.Sheet]:
         return []
     listed = ", ".join(f"{format_si(a, 's')} to {format_si(b, 's')}" for a, b in spans[:_MAX_LISTED])
     more = f" and {len(spans) - _MAX_LISTED} more" if len(spans) > _MAX_LISTED else ""
-    by = "the force, below half of that without voltage" if recorded_speed(recording) is None else "the speed"
-    return [sheet.Sheet(caveats=(f"at rest by {by}, and left out: {listed}{more}",))]
+    by = "by the force, below half of that without voltage" if recorded_speed(recording) is None else "by the speed"
+    told = recording.attrs.get("rest", by)
+    return [sheet.Sheet(caveats=(f"at rest {told}, and left out: {listed}{more}",))]
 
 
 def _windows(recording: "xr.Dataset", windows: WindowStatistics, steady: SteadyStateOnset | None) -> sheet.Sheet:

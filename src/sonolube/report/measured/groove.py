@@ -28,6 +28,7 @@ from sonolube.models.surfaces import (
 )
 from sonolube.models.surfaces.grooves.groove import Groove
 from sonolube.models.surfaces.grooves.track_marks import TrackMarks
+from sonolube.models.surfaces.resampling import block_means
 from sonolube.report.measured import sheet
 from sonolube.report.measured.sheet import captioned
 from sonolube.report.measured.surface import SurfaceSettings, surface_file, surface_source
@@ -53,17 +54,12 @@ def _view(groove: Groove) -> "Figure":
 
     figure = Figure(figsize=(6.4, 4.2))
     axes: Any = figure.add_subplot(projection="3d")
-    levelled = groove.levelled
-    size = max(1, math.ceil(max(levelled.height.shape) / _BLOCKS))
-    z = 1e6 * _block_means(levelled.height, size)
-    y, x = (
-        1e3 * size * step * np.arange(n)
-        for step, n in zip((levelled.spacing_y, levelled.spacing_x), z.shape, strict=True)
-    )
+    cells = block_means(groove.levelled, most=_BLOCKS)
+    x, y, z = 1e3 * cells.x, 1e3 * cells.y, 1e6 * cells.height
     low, high = np.nanquantile(z, [0.002, 0.998])
     axes.plot_surface(*np.meshgrid(x, y), z, cmap="cividis", vmin=low, vmax=high, rstride=1, cstride=1, linewidth=0)
     axes.set(xlabel="x (mm)", ylabel="y (mm)", zlabel="height (µm)")
-    axes.set_box_aspect((x[-1], y[-1], 0.35 * x[-1]), zoom=0.92)
+    axes.set_box_aspect((np.ptp(x), np.ptp(y), 0.35 * np.ptp(x)), zoom=0.92)
     axes.invert_yaxis()  # as on the map, whose first row is the top
     axes.view_init(elev=38, azim=-62)
     return figure
@@ -141,16 +137,6 @@ def marks_figure(track: TrackMarks) -> Chart:
     )
     density = Axis("Power spectral density", "m³", logarithmic=True)
     return one_panel(WAVENUMBER, density, parts, size=(4.6, 3.0))
-
-
-def _block_means(height: Floats, size: int) -> Floats:
-    """Means over square blocks of pixels without missing ones; NaN for blocks without pixels."""
-    rows, columns = (n // size * size for n in height.shape)
-    blocks = height[:rows, :columns].reshape(rows // size, size, columns // size, size)
-    measured = np.isfinite(blocks)
-    count = measured.sum(axis=(1, 3))
-    total = np.where(measured, blocks, 0.0).sum(axis=(1, 3))
-    return np.where(count, total / np.maximum(count, 1), np.nan)
 
 
 _STRAIGHT = 100  # lengths of track, beyond which a diameter is not determined by the scan

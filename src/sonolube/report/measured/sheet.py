@@ -159,6 +159,8 @@ class Sheet:
         What speaks against the numbers, one line each.
     not_found : tuple of str
         What was looked for and not found, with the reason.
+    rig_entries : mapping of str to str
+        What a rig file takes of the values, as text by dotted key.
     """
 
     title: str = ""
@@ -168,6 +170,7 @@ class Sheet:
     figures: tuple[Figure, ...] = ()
     caveats: tuple[str, ...] = ()
     not_found: tuple[str, ...] = ()
+    rig_entries: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
 
     def size(self) -> dict[str, str]:
         """Origins that text gives as well as the page: those that say how large a scan is."""
@@ -184,6 +187,7 @@ def joined(parts: Sequence[Sheet], *, title: str, source: Mapping[str, str]) -> 
         figures=tuple(figure for part in parts for figure in part.figures),
         caveats=tuple(caveat for part in parts for caveat in part.caveats),
         not_found=tuple(reason for part in parts for reason in part.not_found),
+        rig_entries={key: text for part in parts for key, text in part.rig_entries.items()},
     )
 
 
@@ -219,6 +223,11 @@ def field_value(record: object, name: str, label: str = "", unit: str | None = N
         uncertainty=getattr(record, f"{name}_uncertainty", None),
         interval=getattr(record, f"{name}_interval", None),
     )
+
+
+def rig_entries(table: str, values: Mapping[str, float]) -> dict[str, str]:
+    """Entries of a table of a rig file by dotted key, each with its unit, from quantities of the vocabulary."""
+    return {f"{table}.{name}": format_quantity(value, name, digits=4) for name, value in values.items()}
 
 
 def quantity_columns(labels: Mapping[str, str]) -> tuple[Column, ...]:

@@ -9,7 +9,7 @@ import numpy as np
 from sonolube.charts import Axis, Chart, Line, Panel, Part, Points, Rule, one_panel
 from sonolube.checks import Complexes, Floats
 from sonolube.identification.circuit_fit import fit_circuit
-from sonolube.identification.stack_fit import LOG_COMPLEX, fit_stack, residual_for
+from sonolube.identification.stack_fit import LOG_COMPLEX, fit_stack, hardly_determined, residual_for
 from sonolube.measurement.contact_stiffness.analysis import MeasuredContactStiffness, measured_contact_stiffness
 from sonolube.measurement.contact_stiffness.resonance_fit import ResonanceFit
 from sonolube.measurement.contact_stiffness.resonance_spectrum import read_resonance_spectrum
@@ -297,7 +297,13 @@ def _stack(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings, initial: St
         f"Measured, and that of the structure with the stack found by the {fit.residual} residual.",
     )
     figure = captioned(stack_chart)(spectrum, initial.in_structure(fit.stack))
-    return sheet.Sheet(values=values, figures=(figure,), caveats=fit.caveats)
+    loose = hardly_determined(fit.intervals)
+    known = {name: getattr(fit.stack, name) for name in _OF_RIG if name not in loose}
+    entries = sheet.rig_entries("stack", known)
+    return sheet.Sheet(values=values, figures=(figure,), caveats=fit.caveats, rig_entries=entries)
+
+
+_OF_RIG = ("free_capacitance", "free_stroke_per_volt", "stack_stiffness", "stack_damping")  # entries of a rig
 
 
 def _values(intervals: Mapping[str, ConfidenceInterval]) -> tuple[sheet.Value, ...]:

@@ -3,7 +3,7 @@
 import math
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, fields
 from functools import partial
 from pathlib import Path
 
@@ -268,7 +268,8 @@ def _summits(surface: surfaces.HeightMap) -> sheet.Sheet:
             *(sheet.field_value(found, name) for name in names),
             sheet.field_value(moments, "bandwidth", "Bandwidth of the spectrum, Nayak's alpha"),
             sheet.field_value(for_contact, "roughness_parameter"),
-        )
+        ),
+        rig_entries=sheet.rig_entries("contact.roughness", asdict(for_contact)),
     )
 
 

@@ -1,6 +1,5 @@
 """Charts of height maps: heights, Abbott curve, spectrum and autocorrelation."""
 
-import math
 from typing import Final
 
 import numpy as np
@@ -15,9 +14,10 @@ from sonolube.models.surfaces import (
     RadialSpectrum,
     functional_parameters,
 )
+from sonolube.models.surfaces.resampling import block_means
 from sonolube.report.measured.sheet import captioned
 
-_PIXELS: Final = 700  # along the longer side, more than a page resolves
+_CELLS: Final = 700  # along the longer side, more than a page resolves
 _LONGEST: Final = 2000.0  # of a unit, before the next is taken
 _BINS: Final = 80  # of heights
 WAVENUMBER: Final = Axis("Wavenumber", "1/m", logarithmic=True, reciprocal=(1e6, "Wavelength [µm]"))
@@ -38,26 +38,30 @@ def heights(surface: HeightMap) -> Chart:
     return Chart(panels=(map_panel(surface, at), profile), size=(7.4, 3.0), columns=2, widths=(1.15, 1))
 
 
-def map_panel(surface: HeightMap, *others: Part) -> Panel:
-    """Heights as colours, whose ends are the 0.1 and 99.9 % quantiles, and further parts on them."""
+def map_panel(surface: HeightMap, *others: Part, most: int = _CELLS) -> Panel:
+    """Heights as colours, means over blocks in large maps, and further parts on them.
+
+    The ends of the scale are the 0.1 and 99.9 % quantiles; cells that were not measured are left out.
+    """
     unit, scale = length_scale(surface.height)
     across, per_metre = length_scale(surface.x)
-    rows, columns = surface.height.shape
-    step = math.ceil(max(rows, columns) / _PIXELS)
+    cells = block_means(surface, most=most)
     lowest, highest = (scale * float(np.nanquantile(surface.height, share)) for share in (0.001, 0.999))
     field = Field(
-        x=per_metre * surface.x[::step],
-        y=per_metre * surface.y[::step],
-        values=scale * surface.height[::step, ::step],
+        x=per_metre * cells.x,
+        y=per_metre * cells.y,
+        values=scale * cells.height,
         label="Height",
         unit=unit,
         lowest=lowest,
         highest=highest,
     )
-    width, height = (per_metre * n * each for n, each in ((columns, surface.spacing_x), (rows, surface.spacing_y)))
+    rows, columns = surface.height.shape
+    left, right = (per_metre * surface.spacing_x * (column - 0.5) for column in (0, columns))
+    top, bottom = (per_metre * surface.spacing_y * (row - 0.5) for row in (0, rows))
     return Panel(
-        x=Axis("x", across, lowest=0.0, highest=width),
-        y=Axis("y", across, lowest=height, highest=0.0),  # the first row is the top
+        x=Axis("x", across, lowest=left, highest=right),
+        y=Axis("y", across, lowest=bottom, highest=top),  # the first row is the top
         parts=(field, *others),
         has_equal_scales=True,
     )

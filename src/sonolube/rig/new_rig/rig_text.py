@@ -12,7 +12,7 @@ from math import hypot, isclose, log
 from typing import Final
 
 from sonolube.checks import require_positive
-from sonolube.errors import MissingProperty, SonolubeError
+from sonolube.errors import InvalidInput, MissingProperty, SonolubeError
 from sonolube.facts import materials
 from sonolube.models.contact import ElasticBody, contact_pair
 from sonolube.rig.file.contact_section import deviation_of_range
@@ -44,6 +44,11 @@ _METALS: Final = (
 _POISSON_RATIO: Final = 0.33
 _POISSON_REASON: Final = "not in the catalogue; 0.33 assumed: 0.25 to 0.4 changes the effective modulus by 5 %"
 _CLASS: Final = "the class, not the material, is known"
+_LAYER: Final = {
+    "dynamic_modulus_ratio": "dynamic_modulus_ratio",
+    "layer_loss": "elastic_loss",
+    "layer_density": "density",
+}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -138,6 +143,23 @@ class KnownBody:
             table["yield_strength"] = toml_text(strength.yield_strength, "Pa")
         return Entries(tables={place: table}, assumptions=reasons, uncertainty=laws)
 
+    def layer(self, layer_thickness: float) -> Entries:
+        """Entries of a new rig file for this body as a soft layer: its stiffening, loss and density by its material."""
+        if not is_soft(self.material):
+            raise InvalidInput(
+                f"layer_thickness is of a soft body, and {self.material.title} is none; leave it out, or name felt,"
+                " webbing, rubber, skin or a plastic"
+            )
+        table = {"model": json.dumps("soft_layer"), "layer_thickness": toml_text(layer_thickness, "m")}
+        reasons, laws = {"friction.layer_thickness": "as stated, on a rigid base"}, {}
+        for key, name in _LAYER.items():
+            found = self._property(name)
+            table[key] = toml_text(found.value, found.unit) if found.unit else f"{found.value:.4g}"
+            reasons[f"friction.{key}"] = _origin(found) if found.deviation else f"of the catalogue, {found.source}"
+            if found.deviation:
+                laws[f"friction.{key}"] = lognormal_text(found.deviation)
+        return Entries(tables={"friction": table}, assumptions=reasons, uncertainty=laws)
+
     def _property(self, key: str) -> materials.SourcedValue:
         """Property of the material, or of the class of its family where the catalogue lacks it."""
         if key not in self.material.properties and self.material.family in materials.material_classes():
@@ -149,6 +171,12 @@ class KnownBody:
             return self.material.property(key)
         except MissingProperty as refusal:
             raise MissingProperty(f"{str(refusal).partition(';')[0]}; name another material") from None
+
+
+def is_soft(known: materials.Material) -> bool:
+    """Whether a material is of a class that the catalogue knows as a soft layer: how it stiffens with the frequency."""
+    classes = materials.material_classes()
+    return known.family in classes and "dynamic_modulus_ratio" in materials.material(known.family).properties
 
 
 def _origin(known: materials.SourcedValue) -> str:
@@ -189,6 +217,8 @@ class KnownRig:
         How the sliding speed follows from a rotational speed; empty for a speed that is stated.
     direction : VibrationDirection
         Along the normal, or within the plane by Coulomb's law.
+    layer_thickness : float or None
+        Thickness of the softer body as a layer on a rigid base, whose friction is that of a soft layer. [m]
     """
 
     pin: str
@@ -205,8 +235,15 @@ class KnownRig:
     normal_stiffness: float | None = None
     speed_reason: str = ""
     direction: VibrationDirection = NORMAL
+    layer_thickness: float | None = None
 
     def __post_init__(self) -> None:
+        if self.layer_thickness is not None:
+            require_positive(layer_thickness=self.layer_thickness)
+            if not self.direction.is_normal:
+                raise InvalidInput(
+                    f"layer_thickness: a soft layer has no law for a vibration {self.direction.text}; leave one out"
+                )
         require_positive(normal_load=self.normal_load, sliding_speed=self.sliding_speed, frequency=self.frequency)
         if self.friction_coefficient is not None:
             require_positive(friction_coefficient=self.friction_coefficient)
@@ -301,9 +338,13 @@ def _contact(known: KnownRig) -> list[Entries]:
     pair = contact_pair(softer=softer.elastic, harder=harder.elastic, yield_strength=strength.yield_strength)
     area = known.shape.nominal_area(effective_modulus=pair.effective_modulus, normal_load=known.normal_load)
     pressed = {"normal_load": toml_text(known.normal_load, "N"), "nominal_area": toml_text(area, "m2")}
+    stated = known.decay_length is not None or known.normal_stiffness is not None
+    layer = [] if known.layer_thickness is None else [softer.layer(known.layer_thickness)]
+    compliance = [compliance_entries(decay_length=known.decay_length, normal_stiffness=known.normal_stiffness)]
     return [
         Entries(tables={"contact": pressed}, assumptions={"contact.nominal_area": known.shape.text}),
-        compliance_entries(decay_length=known.decay_length, normal_stiffness=known.normal_stiffness),
+        *([] if layer and not stated else compliance),  # of hard worn contacts, which tell nothing of a layer
+        *layer,
         surfaces_in_contact(known.pin_surface, known.disc_surface).entries("contact.roughness"),
         softer.entries("contact.softer", role=softer_role, strength=strength),
         harder.entries("contact.harder", role=harder_role),

@@ -19,7 +19,8 @@ from sonolube.facts import materials
 from sonolube.facts.materials import Material
 from sonolube.models.fem import generate_mesh, medium_from_material, step_text
 from sonolube.models.fem.results.figures import mode_figure, shaped_surface
-from sonolube.models.fem.results.part_modes import longest_axis
+from sonolube.models.fem.results.mode_surfaces import SurfaceModes, surface_modes
+from sonolube.models.fem.results.part_modes import frequency_text, longest_axis
 from sonolube.report import Drawing
 from sonolube.report.results.parts import horns as results
 from sonolube.reproduction.chapter2.poisson_effect import face_friction_chart
@@ -251,6 +252,22 @@ class HornAnswer(Answer):
         if profile is not None:
             files[f"{self.name}-drawing.dxf"] = profile_dxf(profile, horn_notes(self.design, self.material, profile))
         return files
+
+    def surface_modes(self) -> SurfaceModes:
+        """Tuned mode, over the mean displacement of the working face, and its neighbours on the surface of the horn."""
+        mode, axis = self.design.tuned.mode, self.design.body.axis
+        rows = range(mode.modes.rigid_body_count, len(mode.names))
+        frequencies = [(mode.names[row], f"{mode.modes.natural_frequency[row]:.0f} Hz") for row in rows]
+        tuned = frequency_text(frequency=mode.frequency, relative_error=mode.frequency_error)
+        frequencies[mode.row - rows.start] = (mode.names[mode.row], tuned)
+        tip = float(np.mean(face_motion(mode.model, mode.displacement, self.design.working_face, axis)))
+        return surface_modes(
+            mode.model,
+            mode.modes.shapes[list(rows)],
+            frequencies=frequencies,
+            axis=axis,
+            references={mode.names[mode.row]: ("the working face", tip)},
+        )
 
     def dataset(self) -> Dataset:
         """Quantities of the mode, and its axial displacement over the distance from the driven face."""

@@ -15,7 +15,8 @@ from sonolube.models.actuator import tightening_preload
 from sonolube.models.fem import Transducer
 from sonolube.models.fem.results import impedance_spectra
 from sonolube.models.fem.results.figures import impedance_chart
-from sonolube.models.fem.results.part_modes import longest_axis, starting_size
+from sonolube.models.fem.results.mode_surfaces import SurfaceModes, surface_modes
+from sonolube.models.fem.results.part_modes import frequency_text, longest_axis, starting_size
 from sonolube.models.fem.results.stack_stress import ROD, StackStress, stack_stress
 from sonolube.report import Drawing
 from sonolube.report.results.parts import modes_and_impedance as results
@@ -241,6 +242,18 @@ class ImpedanceAnswer(Answer):
             if self.with_modes:
                 files[f"{stem}-modes-{name}.vtu"] = impedance_spectra.coupled_modes_grid(spectrum)
         return files
+
+    def surface_modes(self) -> SurfaceModes:
+        """Coupled modes of the first spectrum on the surface of the transducer, at their series resonances."""
+        spectrum = next(iter(self.spectra.values()))
+        rows = [row for row, mode in enumerate(spectrum.port.modes) if mode in spectrum.coupled_modes]
+        modes = [spectrum.port.modes[row] for row in rows]
+        frequencies = [
+            (mode.name, frequency_text(frequency=mode.series_frequency, relative_error=spectrum.port.frequency_error))
+            for mode in modes
+        ]
+        axis = longest_axis(spectrum.port.model.mesh)
+        return surface_modes(spectrum.port.model, spectrum.port.shapes[rows], frequencies=frequencies, axis=axis)
 
     def dataset(self) -> Dataset:
         """Impedance, phase and motion per volt over frequency and support."""

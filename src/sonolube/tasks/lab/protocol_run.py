@@ -12,7 +12,7 @@ from typing import Annotated, Any, Final, Literal, Unpack
 import sonolube.laboratory.dry_run as dry_runs
 from sonolube.errors import InvalidInput
 from sonolube.facts.protocol import Protocol, flattened, protocol_at, protocol_by_name_or_file
-from sonolube.laboratory import RunControl, RunState, require_possible, run_protocol
+from sonolube.laboratory import RunControl, RunState, RunWatcher, require_possible, run_protocol
 from sonolube.laboratory.devices import Devices
 from sonolube.laboratory.drivers.device_map import ready_devices
 from sonolube.laboratory.dry_run import DryRun, dry_run_chart
@@ -20,12 +20,13 @@ from sonolube.laboratory.records import Run, export_run, read_run
 from sonolube.laboratory.run_plan import RunPlan, begin_record, require_free
 from sonolube.laboratory.runner import Operator
 from sonolube.laboratory.virtual_tribometer import GROOVE_DIAMETER, VirtualTribometer, virtual_tribometer
+from sonolube.laboratory.watching import told
 from sonolube.report import Drawing
 from sonolube.report.results import ended_run as results
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.files import InputFile, file_path
-from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, RealTime, Seed, Tags, facts_of
+from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, Seed, Tags, facts_of
 from sonolube.tasks.parameters import (
     DoorParameter,
     File,
@@ -121,6 +122,7 @@ class DryRunAnswer(Answer):
 
 OperatorDoor = Annotated[Operator | None, DoorParameter()]
 ControlDoor = Annotated[RunControl | None, DoorParameter()]
+WatcherDoor = Annotated[RunWatcher | None, DoorParameter()]
 
 _VIRTUAL = "virtual"
 
@@ -148,6 +150,8 @@ def run_and_record(
     virtual: VirtualTribometer | None = None,
     operator: Operator | None = None,
     control: RunControl | None = None,
+    watcher: RunWatcher | None = None,
+    asks: bool = False,
 ) -> RunAnswer:
     """Run a plan on devices with its record below a folder, and say how it went.
 
@@ -163,6 +167,10 @@ def run_and_record(
         Answers the prompts of a protocol on devices that are not simulated.
     control : RunControl, optional
         Requests of others.
+    watcher : RunWatcher, optional
+        Shown set points, blocks and events.
+    asks : bool
+        Whether the operator, where there is one, answers the prompts of simulated devices too.
 
     Returns
     -------
@@ -174,12 +182,15 @@ def run_and_record(
         If the devices cannot do what the protocol says, nobody can answer its prompts, or another run has one of them.
     """
     require_possible(plan.protocol, devices)
-    answers = _answering(plan.protocol, devices, operator)
+    answers = operator if asks and operator is not None else _answering(plan.protocol, devices, operator)
     control = control or RunControl()
     require_free(devices.resources)
     recorder = begin_record(plan, devices, out=out)
+    told(watcher, lambda each: each.records(recorder.folder))
     with run_stage("running", control) as advance:
-        result = run_protocol(plan.protocol, devices, recorder, operator=answers, control=control, advance=advance)
+        result = run_protocol(
+            plan.protocol, devices, recorder, operator=answers, control=control, advance=advance, watcher=watcher
+        )
         if virtual is not None:
             recorder.store_truth(virtual.truth())
     return RunAnswer(result=result, run=read_run(recorder.folder), simulated=devices.simulated, rig=plan.rig)
@@ -223,7 +234,7 @@ def run(
     *,
     rig: Annotated[OptionalRigSource, File("The rig; a virtual tribometer takes its friction.", "RIG.toml")] = None,
     seed: Seed = 0,
-    real_time: RealTime = False,
+    real_time: Annotated[bool, Parameter("Let a virtual test take its time, and ask its prompts.")] = False,
     dry_run: Annotated[bool, Parameter("Tell what will happen, and touch nothing.")] = False,
     anyway: Annotated[bool, Parameter("Run although a dry run says that it is impossible.")] = False,
     yes: Annotated[bool, Parameter("Take the prompts to the operator as done.")] = False,
@@ -237,6 +248,7 @@ def run(
     out: AllRuns = RUNS,
     operator: OperatorDoor = None,
     control: ControlDoor = None,
+    watcher: WatcherDoor = None,
     **watch: Unpack[Watched],
 ) -> RunAnswer | DryRunAnswer:
     """Run a protocol and record it; motor and drive are off at the end, whatever happens.
@@ -262,6 +274,8 @@ def run(
         virtual=simulated,
         operator=(lambda prompt: True) if yes else operator,
         control=control,
+        watcher=watcher,
+        asks=real_time,
     )
 
 

@@ -200,6 +200,8 @@ def _setting(value: object, mark: Mark) -> str:
     if isinstance(value, list | tuple):
         is_file = isinstance(mark, File)
         return ", ".join(_file_name(each) if is_file else str(each) for each in value)
+    if isinstance(value, Mapping):
+        return ", ".join(f"{key}={each}" for key, each in value.items())
     if isinstance(value, NamedBytes | Rig):
         return value.name
     unit = mark.unit if isinstance(mark, Parameter) and isinstance(value, float | int) else None

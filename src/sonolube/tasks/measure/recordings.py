@@ -1,11 +1,12 @@
 """Tasks that measure recordings: friction, rotation, temperature, calibration of a force gauge, and vibration."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Annotated, Unpack
 
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.measurement.friction.rotation import MotorCalibration
+from sonolube.measurement.friction.stated_parts import Span, StatedParts
 from sonolube.report.measured.friction import FrictionSettings, friction_sheet, joined_friction_sheet
 from sonolube.report.measured.friction_steps import comparison_sheet
 from sonolube.report.measured.sensors import (
@@ -35,8 +36,9 @@ from sonolube.tasks.measure.measured_files import (
     reason_of,
 )
 from sonolube.tasks.own_tables import Mapped, number_table
-from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Watched
+from sonolube.tasks.parameters import File, KeyValues, Number, Parameter, Quantity, Watched
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
+from sonolube.text.units import to_si
 
 
 @task
@@ -62,6 +64,17 @@ def friction(
         Number | None, Quantity("Of the motor with the pin lifted.", "idle_current", kind="CURRENT")
     ] = None,
     groove_diameter: Annotated[Number | None, Quantity("Of the circle under the pin.", "groove_diameter")] = None,
+    part: Annotated[str | None, Parameter("What is measured, such as 5s:55s; else all of it.", "START:END")] = None,
+    rest: Annotated[
+        Sequence[str], Parameter("Where the surfaces rest, such as 0s:3s; may come again.", "START:END")
+    ] = (),
+    step: Annotated[
+        Mapping[str, str] | None,
+        KeyValues(
+            "Step of a voltage that is not recorded, such as 10s:20s=28V; may come again, one of them 0V.",
+            "START:END=VOLTAGE",
+        ),
+    ] = None,
     test_sheet: TestSheet = None,
     **watch: Unpack[Watched],
 ) -> MeasuredFiles:
@@ -85,10 +98,15 @@ def friction(
         sliding_speed=in_si("sliding_speed", sliding_speed),
         rotation_speed=in_si("rotation_speed", rotation_speed),
         motor=_motor(torque_constant, idle_current, groove_diameter),
+        parts=_stated_parts(part, rest, step),
     )
     measure = partial(friction_sheet, settings=settings)
     sheets, refused = each_file(files, measure, title="measuring")
     joined = []
+    if join and settings.parts != StatedParts():
+        raise InvalidInput(
+            f"{shown('join')}: {shown('part')}, {shown('rest')} and {shown('step')} are of one recording"
+        )
     if join and not refused:
         try:
             joined = [joined_friction_sheet(files_of(files), settings=settings)]
@@ -102,6 +120,26 @@ def friction(
     else:
         sheets += joined
     return MeasuredFiles(title="friction", sheets=sheets, refused=refused, test=conditions(test_sheet))
+
+
+def _stated_parts(part: str | None, rest: Sequence[str], step: Mapping[str, str] | None) -> StatedParts:
+    """Parts of a recording by their texts."""
+    steps = [
+        (_span(text, "step"), to_si(voltage, unit="V", name=shown("step"))) for text, voltage in (step or {}).items()
+    ]
+    rests = [_span(text, "rest") for text in ([rest] if isinstance(rest, str) else rest)]
+    return StatedParts(
+        part=None if part is None else _span(part, "part"), rests=tuple(rests), steps=tuple(sorted(steps))
+    )
+
+
+def _span(text: str, name: str) -> Span:
+    """Begin and end of a part by a text such as "5s:55s"."""
+    ends = text.split(":")
+    if len(ends) != 2:
+        raise InvalidInput(f"{shown(name)} {text[:60]!r} needs a begin and an end, such as 5s:55s", key=name)
+    begin, end = (to_si(each.strip(), unit="s", name=shown(name)) for each in ends)
+    return begin, end
 
 
 def _motor(

@@ -23,12 +23,13 @@ from sonolube.text.units import format_si, to_si
 SHAPES_ONLY = ("tip", "direction", "port", "quality_factor", "modal_mass", "length_unit", "force_unit")
 """Arguments without meaning for a table of modes."""
 
-FILE_ONLY = (*SHAPES_ONLY, "force_per_volt", "clamped_capacitance")
+FILE_ONLY = (*SHAPES_ONLY, "force_per_volt", "clamped_capacitance", "static_compliance", "displacement_per_volt")
 """Arguments without meaning for a part."""
 
 _UNITS = {
     **{"body_mass": "kg", "body_stiffness": "N/m", "body_damping": "N s/m"},
     **{"force_per_volt": "N/V", "clamped_capacitance": "F", "modal_mass": "kg"},
+    **{"static_compliance": "m/N", "displacement_per_volt": "m/V"},
 }
 _TABLES = (".csv", ".toml")
 _NEAR = 0.01  # of a millimetre, below which a node lies at its point
@@ -45,6 +46,7 @@ def foreign_structure(
     quality_factor: Number | None,
     modal_mass: Number | None,
     units: tuple[str | None, str | None],
+    statics: tuple[Number | None, Number | None],
     body: SupportedBody | None,
 ) -> "ForeignModesAnswer":
     """Structure of a rig from the modes in a file of another program."""
@@ -74,6 +76,17 @@ def foreign_structure(
         caveats = modes.caveats
     if capacitance is None:
         raise InvalidInput(f"needs {shown('clamped_capacitance')}, such as 4.2nF", key="clamped_capacitance")
+    remark = _truncation(lists)
+    static = in_si("static_compliance", statics[0]), in_si("displacement_per_volt", statics[1])
+    if static[0] is not None and static[1] is not None:
+        lists, capacitance = participation.with_static_correction(
+            lists, static_compliance=static[0], displacement_per_volt=static[1], clamped_capacitance=capacitance
+        )
+        remark = _CORRECTED.format(format_si(float(lists["natural_frequency"][-1]), "Hz", digits=4))
+    elif static != (None, None):
+        raise InvalidInput(
+            f"{shown('static_compliance')} and {shown('displacement_per_volt')} belong together: give both"
+        )
     if body is not None:
         lists = {name: np.append(values, body.mode[name]) for name, values in lists.items()}
     return ForeignModesAnswer(
@@ -81,7 +94,7 @@ def foreign_structure(
         lists=lists,
         clamped_capacitance=capacitance,
         taken=tuple(notes),
-        remarks=(*caveats, _truncation(lists)),
+        remarks=(*caveats, remark),
         command=typed_command(["sonolube", "modes", "--from", part_name(file)], (*FILE_ONLY, *_UNITS)),
     )
 
@@ -137,12 +150,24 @@ def _place(what: str, node: participation.FoundNode, modes: formats.ModeShapes) 
     return f"{what}: node {node.number}{at}{off}"
 
 
+_CORRECTED = (
+    "the last mode, at {}, stands for the static share of all that the file leaves out, by the static values given; the"
+    " clamped capacitance is less by its share"
+)
+
+
 def _truncation(lists: Mapping[str, Floats]) -> str:
-    """Caveat on modes that a file lacks."""
-    highest = float(np.max(lists["natural_frequency"]))
+    """Caveat on modes that a file lacks, with the compliance that they would add if they went on as the last ones."""
+    highest = format_si(float(np.max(lists["natural_frequency"])), "Hz", digits=4)
+    kept, missing = participation.kept_compliance(lists), participation.truncated_compliance(lists)
+    texts = [format_si(each, "m/N", digits=2) for each in (missing, kept)]
+    size = (
+        "" if np.isnan(missing) else f", about {texts[0]} beside {texts[1]} if they go on as those of a slender bar do"
+    )
     return (
-        f"modes above {format_si(highest, 'Hz', digits=4)} are left out: their static compliance at the contact is"
-        " missing, and the clamped capacitance has to contain their share"
+        f"modes above {highest} are left out: their static compliance at the contact is missing{size}, and the clamped"
+        " capacitance has to contain their share; the static compliance and the displacement per volt of a static"
+        " analysis put it in"
     )
 
 

@@ -11,6 +11,7 @@ from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.models.fem.results import part_modes as mode_files
 from sonolube.models.fem.results.figures import ShapedSurface, mode_figure, shaped_surface
+from sonolube.models.fem.results.mode_surfaces import SurfaceModes, surface_modes
 from sonolube.models.fem.results.part_modes import PartModes, modes_dataset, part_modes
 from sonolube.report import Drawing
 from sonolube.report.results.parts import modes_and_impedance as results
@@ -96,6 +97,15 @@ def modes(
     modal_mass: Annotated[
         Number | None, Quantity("Of modes whose file states none; 1kg if mass-normalised.", "kg")
     ] = None,
+    static_compliance: Annotated[
+        Number | None,
+        Quantity(
+            "Of the contact by a static analysis, without rigid motions: for modes left out.", "static_compliance"
+        ),
+    ] = None,
+    displacement_per_volt: Annotated[
+        Number | None, Quantity("Of the contact by a static analysis, beside it.", "displacement_per_volt")
+    ] = None,
     length_unit: Annotated[str | None, Parameter("Of a file that states none, such as mm.", "UNIT")] = None,
     force_unit: Annotated[str | None, Parameter("Of a file that states none, such as N.", "UNIT")] = None,
     **watch: Unpack[Watched],
@@ -127,6 +137,7 @@ def modes(
             quality_factor=quality_factor,
             modal_mass=modal_mass,
             units=(length_unit, force_unit),
+            statics=(static_compliance, displacement_per_volt),
             body=body,
         )
     refuse_unused(*FILE_ONLY, because=f"for a part; it is for {shown('from_file')}")
@@ -254,6 +265,13 @@ class ModesAnswer(Answer):
                     animation = mode_files.mode_animation(self._surface(row), title=self._title(row))
                     files[f"{self._file_name(row)}.gif"] = animation
         return files
+
+    def surface_modes(self) -> SurfaceModes:
+        """Elastic modes on the surface of the part."""
+        found = self.solved.found
+        frequencies = [(each["name"], each["text"]) for each in self.object()["modes"]]
+        shapes = found.modes.shapes[list(self._rows())]
+        return surface_modes(found.model, shapes, frequencies=frequencies, axis=self.solved.axis)
 
     def dataset(self) -> Dataset:
         """Frequencies, errors and shapes of the elastic modes, with the surface of the part."""

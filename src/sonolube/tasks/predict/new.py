@@ -97,6 +97,12 @@ def new(
             kind="STIFFNESS",
         ),
     ] = None,
+    layer_thickness: Annotated[
+        Number | None,
+        Quantity(
+            "Thickness of the softer body, such as felt, as a layer on a rigid base: friction of a soft layer.", "m"
+        ),
+    ] = None,
 ) -> "NewRig":
     """A first rig file from what is known before a test: asks on a terminal for what the options leave out.
 
@@ -144,6 +150,7 @@ def new(
             name=shown("direction"),
             radius_name=shown("torsion_radius"),
         ),
+        layer_thickness=_read_optional("layer_thickness", layer_thickness, "m"),
     )
     rig = rig_of_known(known)
     return NewRig(rig=rig, rig_text=new_rig_text(known), least_known=least_known(rig))
@@ -162,7 +169,8 @@ class NewRig(Answer):
         """Title, the inputs known least with how to measure them, and the next command."""
         heads = ("least known", "distribution", "to measure it")
         rows = [(one.key, one.text, one.remedy) for one in self.least_known]
-        command = [] if self.target is None else [Verbatim(f"  next: sonolube predict {quoted(str(self.target))}")]
+        following = "friction" if self.rig.friction_model.for_soft_bodies else "predict"
+        command = [] if self.target is None else [Verbatim(f"  next: sonolube {following} {quoted(str(self.target))}")]
         return [self.rig.title, Table(heads, rows), *command]
 
     def object(self) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from sonolube.models.fem import (
     gauss_point_stress,
     interpolate_at_points,
     isotropic_medium,
+    nodal_stress,
     von_mises_stress,
 )
 
@@ -43,3 +44,12 @@ def test_a_pulled_bar_is_in_uniaxial_stress_and_a_sheared_one_in_pure_shear() ->
     sheared = np.zeros_like(MESH.nodes)
     sheared[:, 0] = 2e-3 * MESH.nodes[:, 1]
     assert von_mises_stress(gauss_point_stress(model, sheared)) == approx(np.sqrt(3) * 2e-3 * E / (2 * (1 + NU)))
+
+
+def test_a_bent_bar_has_its_greatest_stress_on_its_surface() -> None:
+    # Pure bending of curvature c: stress E c z along x, greatest at half the thickness, zero otherwise (Saint-Venant).
+    model, curvature = Model(mesh=MESH, media={"block": STEEL}), 0.1
+    x, y, z = MESH.nodes.T
+    bent = curvature * np.stack([x * z, -NU * y * z, -(x**2 + NU * (z**2 - y**2)) / 2], axis=1)
+    assert nodal_stress(model, bent) == approx(E * curvature * np.abs(z), abs=1e-9 * E)
+    assert von_mises_stress(gauss_point_stress(model, bent)).max() < 0.95 * nodal_stress(model, bent).max()

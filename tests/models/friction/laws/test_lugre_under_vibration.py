@@ -122,8 +122,6 @@ def test_a_motion_along_of_its_own_is_rigid_friction_for_stiff_bristles() -> Non
     assert lugre_under_vibration(stiff, along, sliding_speed=speeds) == approx(
         expected, abs=5e-3
     )  # of a jump within a step
-    with raises(InvalidInput, match="no law for a motion across the sliding"):
-        lugre_under_vibration(stiff, replace(still, across=along.along), sliding_speed=speeds)
 
 
 def test_fast_in_plane_vibration_reduces_friction_further_on_a_falling_stribeck_curve() -> None:

@@ -1,6 +1,6 @@
 """One bristle on a holder against explicit time integration, limits and the balance of energy."""
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Literal
 
 import numpy as np
@@ -17,7 +17,14 @@ from sonolube.models.contact import (
     load_balanced_motion,
     sinusoidal_motion,
 )
-from sonolube.models.friction import BristleWithHolder, Holder
+from sonolube.models.friction import (
+    BristleWithHolder,
+    Coulomb,
+    Holder,
+    SpringContact,
+    combined_oscillation_ratio,
+    dahl_under_vibration,
+)
 from sonolube.models.surfaces import Roughness
 
 MINDLIN_RATIO, MU, LOAD, FREQUENCY, DECAY_LENGTH, AMPLITUDE = 0.8, 0.3, 3.0, 22e3, 2e-6, 2.5e-6
@@ -174,3 +181,94 @@ def test_in_plane_motion_faster_than_the_sliding_can_drive_the_slider() -> None:
 def test_impossible_holders_are_refused(values: dict[str, float], message: str) -> None:
     with raises(InvalidInput, match=message):
         Holder(**values)
+
+
+def within_plane(along: complex, across: complex, *, normal: float = 0.0) -> ContactMotion:
+    """Motion with complex amplitudes within the plane, in m."""
+    moved = balanced(normal)
+    phases = np.exp(2j * np.pi * np.arange(moved.displacement.size) / moved.displacement.size)
+    return replace(moved, along=(along * phases).real, across=(across * phases).real)
+
+
+SPEEDS = np.array([0.002, 0.02, 0.2])
+
+
+@pytest.mark.parametrize(("along", "across"), [(0.0, 1.0), (0.4, 1.0), (1.0, 0.5 - 0.5j)])
+def test_at_a_constant_load_it_is_the_spring_contact_in_every_direction(along: complex, across: complex) -> None:
+    # a flat profile of the same slip length, integrated in another room; F_n/k_t is l/0.8
+    size = 0.8e-6
+    slip = MU * DECAY_LENGTH / MINDLIN_RATIO
+    expected = combined_oscillation_ratio(
+        SpringContact(friction_coefficient=MU, mindlin_ratio=1.0),
+        approach=slip / MU,
+        frequency=FREQUENCY,
+        sliding_speed=SPEEDS,
+        in_plane_amplitude=size * abs(along),
+        in_plane_phase=-np.angle(along),
+        transverse_amplitude=size * abs(across),
+        transverse_phase=-np.angle(across),
+        steps=8192,
+    )
+    found = BristleWithHolder().ratio(
+        CONTACT, within_plane(size * along, size * across), sliding_speed=SPEEDS, friction_coefficient=MU
+    )
+    assert found == approx(expected, abs=1e-4)
+
+
+def test_with_dahls_exponent_and_a_constant_load_it_is_dahls_law_within_the_plane() -> None:
+    # the cube of D has half the stiffness in the law: both by the length F_c/k of their contact
+    from sonolube.models.contact import cube_tangential_stiffness, normal_force, separation
+    from sonolube.models.contact.tangential_stiffness import mindlin_tangential_stiffness
+
+    d = separation(CONTACT, normal_load=LOAD)
+    scale = float(
+        cube_tangential_stiffness(CONTACT, separation=d) / mindlin_tangential_stiffness(CONTACT, separation=d)
+    )
+    size = 1e-6
+    expected = dahl_under_vibration(
+        CONTACT,
+        separation=d,
+        friction_coefficient=MU,
+        sliding_speed=SPEEDS,
+        frequency=FREQUENCY,
+        in_plane_amplitude=0.3 * size,
+        transverse_amplitude=size,
+        transverse_phase=0.5 - np.pi / 2,
+        steps=4096,
+    ) / (MU * float(normal_force(CONTACT, separation=d)))
+    moved = within_plane(0.3 * size * scale, size * scale * np.exp(-0.5j))
+    found = BristleWithHolder(dahl_exponent=1).ratio(
+        CONTACT, moved, sliding_speed=SPEEDS * scale, friction_coefficient=MU
+    )
+    assert found == approx(expected, abs=1e-4)
+
+
+@pytest.mark.parametrize("exponent", [0, 1])
+def test_along_alone_is_the_limit_of_little_across(exponent: Literal[0, 1]) -> None:
+    model = BristleWithHolder(dahl_exponent=exponent)
+    for normal in (0.0, 1e-6):
+        only, both = (
+            replace(within_plane(1e-6, 0.0, normal=normal), across=None),
+            within_plane(1e-6, 1e-13, normal=normal),
+        )
+        one, other = (
+            model.ratio(CONTACT, each, sliding_speed=SPEEDS, friction_coefficient=MU) for each in (only, both)
+        )
+        assert other == approx(one, abs=2e-4)
+
+
+@pytest.mark.parametrize("exponent", [0, 1])
+def test_long_strokes_have_the_ratio_of_coulomb(exponent: Literal[0, 1]) -> None:
+    moved = within_plane(2e-4, 5e-4j)
+    speeds = np.array([5.0, 30.0, 100.0])
+    found = BristleWithHolder(dahl_exponent=exponent).ratio(
+        CONTACT, moved, sliding_speed=speeds, friction_coefficient=MU
+    )
+    assert found == approx(Coulomb().ratio(CONTACT, moved, sliding_speed=speeds), abs=4e-3)
+
+
+def test_across_on_an_elastic_holder_is_refused_with_the_remedy() -> None:
+    with raises(InvalidInput, match=r"holder_stiffness: .* leave friction.holder_stiffness out"):
+        BristleWithHolder(holder_stiffness=1e6).ratio(
+            CONTACT, within_plane(0.0, 1e-6), sliding_speed=0.1, friction_coefficient=MU
+        )

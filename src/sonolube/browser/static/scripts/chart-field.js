@@ -25,6 +25,7 @@ export const categoryColour = (number) => CATEGORIES[number % CATEGORIES.length]
 /** Ends of the scale of a field. */
 function endsOf({levels, lowest, highest, values}) {
   if (levels) return [levels[0], levels.at(-1)];
+  if (lowest !== undefined && highest !== undefined) return [lowest, highest];
   const [low, high] = extent(values.flat());
   return [lowest ?? low, highest ?? high];
 }

@@ -65,12 +65,13 @@ const stepped = (axis, ends, value, share) => valueAt(axis, ends, along(axis, en
 
 /**
  * @param {{panel: Object, place: number, ranges: {x: number[], y: number[]}, behind: Object[], width: number, height: number,
- *   hasXText: boolean, theme: Object, drag?: Object, onPick?: Function, picks?: string, onRead?: (point: Object|null) => void,
- *   ringed?: {x: number, y: number}, say: (text: string) => void}} props `onRead` is told the point that is read, null where none is
+ *   hasXText: boolean, theme: Object, drag?: Object, over?: (panel: Object, ranges: Object) => any, onPick?: Function, picks?: string,
+ *   onRead?: (point: Object|null) => void, ringed?: {x: number, y: number}, say: (text: string) => void}} props `over` gives what lies over the
+ *   area between the axes, `onRead` is told the point that is read, null where none is
  */
 export function ChartPanel(props) {
-  const {panel, place, behind, width, height, hasXText, theme, drag, onPick, picks = 'sets the rig', onRead, ringed, say} = props;
-  const [host, handle, plot] = [useRef(null), useRef(null), useRef(null)];
+  const {panel, place, behind, width, height, hasXText, theme, drag, over, onPick, picks = 'sets the rig', onRead, ringed, say} = props;
+  const [host, handle, veil, plot] = [useRef(null), useRef(null), useRef(null), useRef(null)];
   const latest = useRef(null);
   const [tip, setTip] = useState(null);
   const [held, setHeld] = useState(null);
@@ -83,8 +84,9 @@ export function ChartPanel(props) {
     ...props, ranges, draw: (u) => {
       const map = mapOf(u);
       drawParts(u.ctx, panel, {map, theme, scale: devicePixelRatio, behind, rule, held, ringed});
-      if (!handle.current || !rule) return;
       const [left, top, length, high] = [map.box.left, map.box.top, map.box.width, map.box.height].map((each) => each / devicePixelRatio);
+      if (veil.current) Object.assign(veil.current.style, {left: `${left}px`, top: `${top}px`, width: `${length}px`, height: `${high}px`});
+      if (!handle.current || !rule) return;
       Object.assign(handle.current.style, {left: `${left - THUMB / 2}px`, top: `${top}px`, width: `${length + THUMB}px`, height: `${high}px`});
     },
   };
@@ -188,6 +190,7 @@ export function ChartPanel(props) {
       onPointerDown=${(event) => { pressed.current = [event.clientX, event.clientY]; hover(event); }} onClick=${pick}></div>
     ${rule && html`<input ref=${handle} type="range" class="chart-handle" min="0" max=${RULE_STEPS} value=${Math.round(RULE_STEPS * along(panel.x, ranges.x).to(value))} aria-valuetext=${withUnit(value, panel.x)}
       aria-label=${`${rule.label || 'Value'}, ${flat(panel.x.label)}`} data-test=${`drag:${place}`} onInput=${move} onChange=${release} onPointerDown=${hide} />`}
+    ${over && html`<div ref=${veil} class="chart-over">${over(panel, ranges)}</div>`}
     ${tip && html`<div class=${`chart-tip${tip.left > width / 2 ? ' is-left' : ''}${tip.top > height / 2 ? ' is-above' : ''}`}
       style=${{left: `${tip.left}px`, top: `${tip.top}px`, maxWidth: `${Math.max(150, Math.max(tip.left, width - tip.left) - 16)}px`}}
       aria-hidden="true" data-test="tip">

@@ -8,7 +8,7 @@ import {dash, fieldOf, flat, rangesOf, themeOf} from './chart-scale.js';
 import {classes, useEvents} from './parts.js';
 
 const MIN_WIDTH = 250; // px of a panel
-const [LOWEST, HIGHEST, WIDEST] = [180, 400, 760]; // px
+const [LOWEST, HIGHEST, WIDEST, TALLEST] = [180, 400, 760, 640]; // px
 const GAP = 16;
 const COLOURS_WIDTH = 72;
 const TEXT_HEIGHT = 18; // of the label of an axis
@@ -101,8 +101,11 @@ function layoutOf({panels, columns: wanted, size: [inchWide, inchHigh], widths, 
     const own = Math.floor((room * wide[place % columns]) / allWide - (isScaled(place) ? COLOURS_WIDTH : 0));
     const words = WORD_HEIGHT * (panels[place].y.words?.length ?? 0);
     const [across, up] = ['x', 'y'].map((name) => Math.abs(ranges[place][name][1] - ranges[place][name][0]));
-    const height = panels[place].has_equal_scales ? Math.min(((own - BESIDE) * up) / across + BELOW, WIDEST)
-      : (base * high[Math.floor(place / wanted)] * rows) / allHigh;
+    if (panels[place].has_equal_scales) {
+      const wide = Math.min(own - BESIDE, ((TALLEST - BELOW) * across) / up);
+      return {width: Math.round(wide + BESIDE), height: Math.round((wide * up) / across + BELOW)};
+    }
+    const height = (base * high[Math.floor(place / wanted)] * rows) / allHigh;
     return {width: own, height: Math.round(Math.max(height, words))};
   };
   return {columns, isWhole, sizeOf};
@@ -126,9 +129,10 @@ function ChartTables({tables: latest, name}) {
  * @param {{name: string, caption?: string, chart: Object, tables?: Object[], dimmed?: boolean,
  *   kept?: {label: string, chart: Object}[], onPick?: (place: {panel: number, x: number, y: number}) => void,
  *   canPick?: (panel: number) => boolean, picks?: string, onRead?: (point: Object|null) => void, ringed?: {x: number, y: number},
- *   drag?: {panel: number, onMove: (x: number) => void, onRelease: (x: number) => void}[]}} props
+ *   drag?: {panel: number, onMove: (x: number) => void, onRelease: (x: number) => void}[],
+ *   over?: (panel: object, ranges: object) => any}} props `over` gives what lies over the area between the axes of a panel
  */
-export function Chart({name, caption, chart, tables, dimmed, kept = NO_KEPT, onPick, canPick, picks, onRead, ringed, drag}) {
+export function Chart({name, caption, chart, tables, dimmed, kept = NO_KEPT, onPick, canPick, picks, onRead, ringed, drag, over}) {
   const [figure, width, theme] = useRoom();
   const [said, say] = useState('');
   const keptCharts = useMemo(() => kept.map((each) => each.chart), [kept]);
@@ -160,7 +164,8 @@ export function Chart({name, caption, chart, tables, dimmed, kept = NO_KEPT, onP
             ${legend === 'panels' && html`<${Legend} theme=${theme} entries=${entriesOf([panel])} />`}
             <div class="chart-row">
               <${ChartPanel} panel=${panel} place=${place} ranges=${ranges[place]} behind=${behind[place]} width=${size.width}
-                height=${size.height + (hasXText(place) ? TEXT_HEIGHT : 0)} hasXText=${hasXText(place)} theme=${theme} drag=${drag?.find((each) => each.panel === place)} onPick=${!canPick || canPick(place) ? onPick : undefined} picks=${picks} onRead=${onRead} ringed=${ringed} say=${say} />
+                height=${size.height + (hasXText(place) ? TEXT_HEIGHT : 0)} hasXText=${hasXText(place)} theme=${theme} drag=${drag?.find((each) => each.panel === place)}
+                over=${over} onPick=${!canPick || canPick(place) ? onPick : undefined} picks=${picks} onRead=${onRead} ringed=${ringed} say=${say} />
               ${field && html`<${ColourScale} field=${field} height=${size.height - 20} />`}
             </div></div>`;
         })}

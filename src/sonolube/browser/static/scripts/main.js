@@ -1,16 +1,16 @@
 /** Shell of the workbench: head with pages, undo, take away and theme; below it the page of the state. */
 import {html, render, useEffect, useErrorBoundary, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {ask, enter, useConnection} from './api.js';
-import {Button, capital, Loading, Refusal, Select, Sheet, useEvents, Warning} from './parts.js';
+import {Button, capital, Loading, Refusal, Select, Sheet, useEvents, useInView, Warning} from './parts.js';
 import {addressAsLeft, addressOf, followAddress, PAGES, redo, stored, undo, useApp} from './state.js';
 import {TakeAway} from './take-away.js';
 
 /** Pages with styles of their own, in `pages/` beside the scripts. */
-const STYLED = new Set(['data', 'modes', 'design', 'lab']);
+const STYLED = new Set(['data', 'modes', 'design', 'lab', 'jobs', 'dissertation']);
 
-/** Module of a page, read with its styles. */
-function read(page) {
-  const module = import(`./pages/${page === 'new' ? 'new-rig' : page}.js`);
+/** Module of a page, or another one that has its styles, read with them. */
+function read(page, path = `./pages/${page === 'new' ? 'new-rig' : page}.js`) {
+  const module = import(path);
   if (!STYLED.delete(page)) return module;
   const link = Object.assign(document.createElement('link'), {rel: 'stylesheet', href: `static/pages/${page}.css`});
   const styles = new Promise((done) => Object.assign(link, {onload: done, onerror: done}));
@@ -37,13 +37,9 @@ const ThemeSwitch = () => html`<label class="theme"><span class="hidden">Theme</
 
 function Head() {
   const {state, canUndo, canRedo} = useApp();
-  const links = useRef(null);
+  const links = useInView(state.page);
   useEvents(['keydown'], onKey);
   useEvents(['dragover', 'drop'], stay);
-  useEffect(() => {
-    const here = links.current.querySelector('[aria-current]'); // in view where there is no room for all
-    links.current.scrollLeft = here.offsetLeft - (links.current.clientWidth - here.offsetWidth) / 2;
-  }, [state.page]);
   return html`<header class="head">
     <a class="skip" href="#answer" onClick=${skip}>Skip to the answer</a>
     <a class="name" href=${addressOf('predict')} data-test="home">sonolube</a>
@@ -131,6 +127,23 @@ const Broken = ({again}) => html`<${Sheet} title="No answer">
   <${Warning}><p><strong>This page made a mistake.</strong> What you typed is in the address of this page and not lost.</p>
     <${Button} onClick=${again}>Draw it again<//><//><//>`;
 
+const BETWEEN = 5000; // ms between looks whether a run is at work
+
+/** Stop button of a run of the laboratory, on every page; its module is read when a run is at work. */
+function AtWork() {
+  const [Stop, setStop] = useState(null);
+  const look = async () => {
+    if (!Stop && (await ask('api/start')).content?.is_running) setStop(await read('lab', './lab/stop.js').then((module) => () => module.default, () => null));
+  };
+  useEvents(['runstart'], look);
+  useEffect(() => {
+    look();
+    const timer = Stop ? 0 : setInterval(look, BETWEEN);
+    return () => clearInterval(timer);
+  }, [Stop]);
+  return Stop && html`<${Stop} />`;
+}
+
 /** Undo and redo by keys, where no text field has its own. */
 function onKey(event) {
   if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
@@ -159,7 +172,7 @@ async function start() {
   await followAddress(reply.content.rig);
   render(null, root);
   root.replaceChildren();
-  render(html`<${Head} /><${Connection} /><main id="main"><${Page} /></main>`, root);
+  render(html`<${AtWork} /><${Head} /><${Connection} /><main id="main"><${Page} /></main>`, root);
 }
 
 start();

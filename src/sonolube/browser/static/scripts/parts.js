@@ -1,5 +1,5 @@
 /** What several pages draw: buttons, choices, cards, notices; and texts and events that they have in common. */
-import {html, useEffect, useRef} from '../vendor/htm-preact-3.1.1.js';
+import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 
 /** @param {string} name @returns {string} */
 export const words = (name) => String(name).replaceAll('_', ' ');
@@ -33,12 +33,15 @@ export const Warning = ({children, ...rest}) => html`<div class="notice is-warni
 /** Why something is refused; nothing where it is not. @param {{text?: string, [name: string]: any}} properties */
 export const Refusal = ({text, ...rest}) => (text ? html`<p class="refusal" ...${rest}>${text}</p>` : null);
 
-/** Button that asks for a file of this computer. @param {{accept: string, label: string, onFile: (file: File) => void, children: any, [name: string]: any}} properties */
-export function FileButton({accept, label, onFile, test, children, ...rest}) {
+/** Button that asks for a file of this computer, or for several. @param {{accept?: string, label: string, onFile?: (file: File) => void, onFiles?: (files: File[]) => void, children: any, [name: string]: any}} properties */
+export function FileButton({accept, label, onFile, onFiles, test, children, ...rest}) {
   const chooser = useRef(null);
-  const take = (event) => event.target.files.length && onFile(event.target.files[0]);
+  const take = ({target}) => {
+    if (target.files.length) (onFiles ?? (([file]) => onFile(file)))([...target.files]);
+    target.value = ''; // so that the same file can be chosen again
+  };
   return html`<${Button} onClick=${() => chooser.current.click()} ...${rest}>${children}<//>
-    <input type="file" accept=${accept} class="hidden" tabindex="-1" aria-label=${label} ref=${chooser} onChange=${take} data-test=${test} />`;
+    <input type="file" accept=${accept} multiple=${Boolean(onFiles)} class="hidden" tabindex="-1" aria-label=${label} ref=${chooser} onChange=${take} data-test=${test} />`;
 }
 
 /** Listen to events of the window while a component is shown. @param {string[]} kinds @param {(event: any) => void} listener */
@@ -50,6 +53,28 @@ export function useEvents(kinds, listener) {
     kinds.forEach((kind) => addEventListener(kind, listen));
     return () => kinds.forEach((kind) => removeEventListener(kind, listen));
   }, []);
+}
+
+/** Row that scrolls sideways where there is no room: what is chosen in it stays in view. @param {any} chosen */
+export function useInView(chosen) {
+  const row = useRef(null);
+  useEffect(() => {
+    const [here, around] = [row.current.querySelector('[aria-current], :checked'), row.current].map((each) => each?.getBoundingClientRect());
+    if (here) row.current.scrollLeft += here.left + here.width / 2 - around.left - around.width / 2;
+  }, [chosen]);
+  return row;
+}
+
+/** Take files that are dropped anywhere on the page; true while some are held over it. @param {(files: File[]) => void} onFiles @returns {boolean} */
+export function useDrop(onFiles) {
+  const [isOver, setOver] = useState(false);
+  useEvents(['dragover', 'dragleave', 'drop'], (event) => {
+    if (!event.dataTransfer?.types.includes('Files')) return;
+    event.preventDefault();
+    setOver(event.type === 'dragover');
+    if (event.type === 'drop') onFiles([...event.dataTransfer.files]);
+  });
+  return isOver;
 }
 
 /** Address of a file of a job. @param {string} id @param {string} name @returns {string} */

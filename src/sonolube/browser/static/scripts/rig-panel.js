@@ -2,7 +2,7 @@
 import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {useReply} from './api.js';
 import {Field, focusField, spreadKey} from './fields.js';
-import {Button, FileButton, Loading, Refusal, Select, useEvents} from './parts.js';
+import {Button, FileButton, Loading, Refusal, Select, useDrop} from './parts.js';
 import {addressOf, change, isOfTab, pack, setEntry, settle, useApp} from './state.js';
 
 /** Where the drawing of a rig shows values. */
@@ -35,7 +35,7 @@ const textOf = (rig, field) => rig.changes[field.key] ?? field.text;
 const tableOf = (field) => field.key.slice(0, field.key.lastIndexOf('.'));
 
 /** Chooser of a rig: the examples, the one that was opened, an own file. */
-function RigChoice({view}) {
+export function RigChoice({view}) {
   const {state} = useApp();
   const own = state.rig.text !== undefined;
   const names = [...new Set([...(own ? [state.rig.name] : []), ...(view?.rigs ?? last.view?.rigs ?? []), state.rig.name])].filter(Boolean);
@@ -105,17 +105,6 @@ export async function openRigText(name, text, page = undefined) {
 
 const openRig = async (file) => openRigText(file.name.replace(/\.toml$/i, ''), await file.text());
 
-/** Take files that are dropped anywhere on the page: a rig by its ending, any other as the page takes it. */
-function useDrop(onFile) {
-  const [isOver, setOver] = useState(false);
-  useEvents(['dragover', 'dragleave', 'drop'], (event) => {
-    if (!event.dataTransfer?.types.includes('Files')) return;
-    setOver(event.type === 'dragover');
-    if (event.type === 'drop') for (const file of event.dataTransfer.files) (/\.toml$/i.test(file.name) ? openRig : onFile)?.(file);
-  });
-  return isOver;
-}
-
 /** Rig with its drawing and fields; `extra` stands below those of the operating point. */
 export function RigPanel({extra}) {
   const {state: {rig}} = useApp();
@@ -156,7 +145,7 @@ export function RigPanel({extra}) {
 
 /** Frame of a page with the rig: the lead above its answer (sticky on narrow screens), the rig, the answer; `onFile` takes what is dropped beside a rig. */
 export function Workspace({lead, extra, onFile, children}) {
-  const isDropping = useDrop(onFile);
+  const isDropping = useDrop((files) => files.forEach((file) => (/\.toml$/i.test(file.name) ? openRig : onFile)?.(file)));
   return html`<div class="workspace">
     <div class="lead" id="answer" tabindex="-1">${lead}</div>
     <${RigPanel} extra=${extra} />

@@ -16,7 +16,7 @@ const STEPS = 100; // of undo
 const LONGEST_TEXT = 8192; // characters of a compressed rig file that a link holds
 const KEPT_PREFIX = 'kept-';
 const WITH_RIG = ['predict', 'explore', 'design']; // pages that share some entries of their views
-const SHARED = ['runs', 'pin', 'disc', 'lubricant'];
+const SHARED = ['runs', 'pin', 'disc', 'lubricant', 'lost'];
 
 /** @type {State} */
 let state = {page: 'predict', rig: {name: '', changes: {}}, view: {}};
@@ -64,7 +64,7 @@ export function useListening(to) {
 /** Text as bytes through a stream of the browser, as base64url or back. */
 const through = async (stream, bytes) => new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
 
-/** Compress the text of a rig so that a link can hold it; a long one is kept by this tab only. @param {string} text @returns {Promise<void>} */
+/** Compress the text of a rig so that a link can hold it, and give its code; a long one is kept by this tab only. @param {string} text @returns {Promise<string>} */
 export async function pack(text) {
   const bytes = await through(new CompressionStream('deflate-raw'), new TextEncoder().encode(text));
   const binary = Array.from(bytes, (byte) => String.fromCharCode(byte)).join('');
@@ -74,12 +74,14 @@ export async function pack(text) {
     stored('sessionStorage', code, text);
   }
   packed.set(text, code);
+  return code;
 }
 
 /** Whether the text of a rig is too long for a link. @param {string} [text] @returns {boolean} */
 export const isOfTab = (text) => Boolean(packed.get(text)?.startsWith(KEPT_PREFIX));
 
-async function unpack(code) {
+/** Text of a code of `pack`; undefined where this tab no longer keeps it. @param {string} code @returns {Promise<string|undefined>} */
+export async function unpack(code) {
   const isKept = code.startsWith(KEPT_PREFIX);
   const bytes = isKept ? null : Uint8Array.from(atob(code.replaceAll('-', '+').replaceAll('_', '/')), (letter) => letter.charCodeAt(0));
   const text = isKept ? stored('sessionStorage', code) : new TextDecoder().decode(await through(new DecompressionStream('deflate-raw'), bytes));

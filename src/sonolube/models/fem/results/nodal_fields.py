@@ -1,4 +1,4 @@
-"""Nodal fields: values at points of the body, stresses, averages at nodes, and VTK unstructured grids (.vtu)."""
+"""Nodal fields: values at points of the body, stresses, and VTK unstructured grids (.vtu)."""
 
 import base64
 from collections.abc import Mapping
@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 from sonolube.checks import Floats, require_finite
 from sonolube.errors import InvalidInput
 from sonolube.models.fem.mesh.element_order import change_order, transfer_field
-from sonolube.models.fem.mesh.mesh import Mesh, lagrange_nodes, shape_functions
+from sonolube.models.fem.mesh.mesh import Mesh, lagrange_nodes, shape_functions, simplex_quadrature
 from sonolube.models.fem.solver.model import Model
 
 _NEIGHBOURS = 24  # elements of nearest centroids among which the one that contains a point is searched
@@ -84,9 +84,14 @@ def gauss_point_stress(model: Model, nodal_displacements: ArrayLike) -> Floats:
 
     Strains of quadratic elements are most accurate at these points; at the corners of curved elements they scatter.
     """
-    mesh, nodal = model.mesh, require_finite(nodal_displacements=nodal_displacements)
     points = np.full((4, 4), (5 - np.sqrt(5)) / 20)
     np.fill_diagonal(points, (5 + 3 * np.sqrt(5)) / 20)
+    return _stress_at(model, require_finite(nodal_displacements=nodal_displacements), points)
+
+
+def _stress_at(model: Model, nodal: Floats, points: Floats) -> Floats:
+    """Elastic stress at points of each element, shape (m, q, 6), by their barycentric coordinates, shape (q, 4)."""
+    mesh = model.mesh
     _, local_gradient = shape_functions(mesh.order, points)  # (a, d, q)
     jacobian = np.einsum("eax,adq->eqdx", mesh.nodes[mesh.elements], local_gradient, optimize=True)
     derivative = np.einsum("eai,adq->eqdi", nodal[mesh.elements], local_gradient, optimize=True)
@@ -124,26 +129,44 @@ def von_mises_stress(stress: ArrayLike) -> Floats:
     return np.asarray(np.sqrt(0.5 * np.sum(difference**2, axis=-1) + 3 * np.sum(shear**2, axis=-1)))
 
 
-def nodal_average(mesh: Mesh, corner_values: Floats) -> Floats:
-    """Nodal field from values at the corners of elements: their mean at each corner, interpolated linearly between.
+def nodal_stress(model: Model, shape: ArrayLike) -> Floats:
+    """Equivalent stress of von Mises at the nodes.
 
     Parameters
     ----------
-    mesh : Mesh
-    corner_values : ndarray, shape (m, 4)
-        Values at, or near, the corners of each element.
+    model : Model
+    shape : array_like, shape (n, 3)
+        Displacements of the nodes in m.
 
     Returns
     -------
     ndarray, shape (n,)
+        In Pa.
+
+    See Also
+    --------
+    gauss_point_stress
     """
-    total, count = np.zeros(mesh.node_count), np.zeros(mesh.node_count)
-    np.add.at(total, mesh.elements[:, :4], corner_values)
-    np.add.at(count, mesh.elements[:, :4], 1.0)
-    mean = np.divide(total, count, out=np.zeros_like(total), where=count > 0)
-    barycentric = lagrange_nodes(mesh.order, corners=4) / mesh.order
-    mean[mesh.elements] = mean[mesh.elements[:, :4]] @ barycentric.T
-    return mean
+    return von_mises_stress(nodal_stress_components(model, require_finite(shape=shape)))
+
+
+def nodal_stress_components(model: Model, shape: Floats) -> Floats:
+    """Stress components xx, yy, zz, yz, xz, xy at the nodes, shape (n, 6), averaged over the adjacent elements.
+
+    In each element the polynomial of least squares, one degree below that of the displacements, continues the stress
+    to its nodes: the derivatives themselves scatter there where the element is curved, and the values inside an element
+    miss the peak on the surface.
+    """
+    mesh = model.mesh
+    degree = mesh.order - 1
+    points, weights = simplex_quadrature(2 * degree, corners=4)
+    inside, _ = shape_functions(degree, points)
+    at_nodes, _ = shape_functions(degree, lagrange_nodes(mesh.order, corners=4) / mesh.order)
+    continued = at_nodes.T @ np.linalg.solve((inside * weights) @ inside.T, inside * weights)
+    total, count = np.zeros((mesh.node_count, 6)), np.zeros(mesh.node_count)
+    np.add.at(total, mesh.elements, continued @ _stress_at(model, shape, points))
+    np.add.at(count, mesh.elements, 1.0)
+    return total / count[:, np.newaxis]
 
 
 _QUADRATIC_TETRA = 24  # VTK's cell type, with the same node numbering as `Mesh`

@@ -1,4 +1,4 @@
-"""Mean force over the steady period of a bristle law that is linear in the deformation between reversals (kernel)."""
+"""Mean force over the steady period of a bristle law, linear in the deformation along straight slides (kernel)."""
 
 import numpy as np
 
@@ -9,10 +9,13 @@ __all__: list[str] = []  # kernel of this room
 
 
 @kernel(cache=True, no_cfunc_wrapper=True)
-def steady_period_mean_force(stiffness: Floats, limit: Floats, slides: Floats, durations: Floats) -> Floats:
-    """Mean force of each row of steps over its steady period.
+def steady_period_mean_force(
+    stiffness: Floats, limit: Floats, slides: Floats, paths: Floats, durations: Floats
+) -> Floats:
+    """Mean of one component of the force over the steady period of each row of steps.
 
-    `stiffness, limit` has shape (m, n). `slides` has shape (m, n). `durations` has shape (m, n). Shape (m,).
+    `slides` are those along the component, `paths` their lengths within the plane, `durations` weights of the steps:
+    with slides in their place the mean is the work of the component. All have shape (m, n), the result (m,).
 
     After every step the deformation is a linear function of that at the start of the period, and so is the time
     integral of the force. The steady period is the fixed point of the map of one period.
@@ -22,11 +25,11 @@ def steady_period_mean_force(stiffness: Floats, limit: Floats, slides: Floats, d
         # deformation after each step: kept * (that at the start) + gained; likewise the time integral of the force
         kept, gained, log_kept, mean_kept, mean_gained = 1.0, 0.0, 0.0, 0.0, 0.0
         for step in range(stiffness.shape[1]):
-            k, largest, slide = stiffness[point, step], limit[point, step], slides[point, step]
-            decay = k * abs(slide) / largest
+            k, largest, path = stiffness[point, step], limit[point, step], paths[point, step]
+            decay = k * path / largest
             if decay == 0.0:
                 continue
-            steady = np.sign(slide) * largest / k
+            steady = slides[point, step] / path * largest / k
             relaxed = -np.expm1(-decay)
             weight, held = durations[point, step] * k, relaxed / decay
             mean_kept += weight * held * kept

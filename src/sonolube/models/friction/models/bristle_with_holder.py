@@ -21,6 +21,7 @@ from sonolube.models.friction.bristle import (
     mean_force_massless_holder,
 )
 from sonolube.models.friction.models.model import FrictionModel, parameter
+from sonolube.models.friction.models.planar_stick_slip import planar_bristle_force
 
 
 @final
@@ -62,6 +63,11 @@ class BristleWithHolder(FrictionModel):
     and exp(-beta)/I0(beta) in the limit of slow sliding, with beta = a/l: the smallest ratio by vibration along the
     normal alone. An elastic holder without mass is a spring in series with the bristle.
 
+    Under vibration across the sliding, on a rigid holder alone, the force is a vector within the plane: with exponent 0
+    it follows the slide up to the limit and then a tractrix, as in `combined_oscillation_ratio`; with exponent 1 it is
+    Dahl's law for bristles that yield alike in every direction,
+    :math:`\dot{\boldsymbol F} = k_t (\boldsymbol v - |\boldsymbol v| \boldsymbol F/\mu F_n)`.
+
     The bristle is continuous while parts of the contact open and close. With in-plane motion in phase with the normal
     one its varying stiffness therefore increases the force; in `AsperityStickSlip`, where the force of every asperity
     restarts at each contact, it does not.
@@ -80,7 +86,7 @@ class BristleWithHolder(FrictionModel):
     name: ClassVar[str] = "bristle_with_holder"
     citation: ClassVar[str] = "M. Popov, V. L. Popov and N. V. Popov, Friction 5, 45 (2017)"
 
-    directions: ClassVar[frozenset[str]] = frozenset({"normal", "along"})
+    directions: ClassVar[frozenset[str]] = frozenset({"normal", "along", "across"})
 
     holder_stiffness: float = parameter(math.inf, positive=True)
     holder_mass: float = parameter(0.0, lowest=0.0)
@@ -105,6 +111,11 @@ class BristleWithHolder(FrictionModel):
         if mu is None:
             raise InvalidInput(f"{self.name} requires a friction_coefficient, which limits the force of the bristle")
         coefficient = float(require_positive(friction_coefficient=mu))
+        if motion.across is not None and math.isfinite(self.holder_stiffness):
+            raise InvalidInput(
+                f"holder_stiffness: {self.name} has no law for a vibration across the sliding on an elastic holder;"
+                " leave friction.holder_stiffness out for a rigid one"
+            )
         d = require_open_gap(contact, motion)
         settled = True
 
@@ -116,6 +127,10 @@ class BristleWithHolder(FrictionModel):
             u = self._along(sampled)[order]
             step = 1 / (motion.frequency * order.size)
             slides = np.roll(u, -1) - u, v_r * step
+            if sampled.across is not None:
+                w = sampled.across[order]
+                planar = slides[0], np.roll(w, -1) - w, slides[1], float(self.dahl_exponent)
+                return planar_bristle_force(k, limit, *planar) / (coefficient * motion.normal_load)
             forces, settled = self._mean_force(k, limit, slides, step)
             return forces / (coefficient * motion.normal_load)
 

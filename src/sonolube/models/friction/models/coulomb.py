@@ -66,15 +66,17 @@ class Coulomb(FrictionModel):
             )
             return np.asarray(float(force_ratio.mean()) * ratio)
 
-        def mean(sampled: ContactMotion) -> Floats:
-            rate = sampled.frequency * sampled.displacement.size
-            along, across = (
-                np.zeros(sampled.displacement.size) if each is None else _rates(each, rate)
-                for each in (sampled.along, sampled.across)
-            )
-            return _weighted_direction(sampled.normal_force / sampled.normal_load, along, across, v_r)
+        return richardson_period_mean(lambda sampled: sampled_coulomb_ratio(sampled, v_r), motion)
 
-        return richardson_period_mean(mean, motion)
+
+def sampled_coulomb_ratio(motion: ContactMotion, v_r: Floats) -> Floats:
+    """Friction ratio by Coulomb's law with velocities and force linear between the samples; shape of `v_r`, (n,)."""
+    rate = motion.frequency * motion.displacement.size
+    along, across = (
+        np.zeros(motion.displacement.size) if each is None else _rates(each, rate)
+        for each in (motion.along, motion.across)
+    )
+    return _weighted_direction(motion.normal_force / motion.normal_load, along, across, v_r)
 
 
 _POWER_SAMPLES = 8192  # per period, of a velocity that may turn within it

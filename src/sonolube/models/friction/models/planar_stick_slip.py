@@ -1,12 +1,14 @@
-"""Stick-slip of asperities that are moved along and across the sliding, and along the normal, at once."""
+"""Stick-slip within the plane, along and across the sliding at once: of many asperities, and of one bristle."""
 
 from itertools import pairwise
+from math import exp, hypot
 
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.execution.compilation import kernel
-from sonolube.models.friction.oscillating_contact.driven_spring import steady_spring_period
+from sonolube.execution.compilation import INNER, kernel
+from sonolube.models.friction.bristle import MAXIMUM_PERIODS
+from sonolube.models.friction.oscillating_contact.driven_spring import slide_spring, steady_spring_period
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 _FARTHEST = 24.0  # decay lengths above the widest gap beyond which the load of elements is negligible
@@ -64,3 +66,42 @@ def _mean_ratio(limit: Floats, x: Floats, y: Floats, heights: Floats, weights: F
         friction += weights[j] * force
         normal += weights[j] * mean_limit
     return friction / normal
+
+
+@kernel(cache=True, no_cfunc_wrapper=True)
+def planar_bristle_force(
+    k: Floats, limit: Floats, along: Floats, across: Floats, steady: Floats, exponent: float
+) -> Floats:
+    """Mean force along the sliding of a bristle on a rigid holder over its steady period, for each steady slide.
+
+    `k, limit` are stiffness and limit at the samples, `along, across` the slides between them; shape (n,). Result (m,).
+    """
+    n = k.size
+    means = np.empty(steady.size)
+    for i in range(steady.size):
+        p, q = limit[0], 0.0
+        for _ in range(MAXIMUM_PERIODS):
+            start_p, start_q, total = p, q, 0.0
+            for j in range(n):
+                after = j + 1 if j + 1 < n else 0
+                stiff, dx, dy = (k[j] + k[after]) / 2, along[j] + steady[i], across[j]
+                if exponent == 0.0:
+                    p, q = slide_spring(p, q, limit[j], limit[after], stiff * dx, stiff * dy)
+                else:
+                    p, q = _after_dahl_slide(p, q, (limit[j] + limit[after]) / 2, limit[after], stiff * dx, stiff * dy)
+                total += p
+            if hypot(p - start_p, q - start_q) <= 1e-12 * limit.max():
+                break
+        means[i] = total / n
+    return means
+
+
+@kernel(**INNER)
+def _after_dahl_slide(p: float, q: float, limit: float, after: float, dx: float, dy: float) -> tuple[float, float]:
+    """Force by Dahl's law after a straight slide, given times the stiffness, within the limit at its end."""
+    path = hypot(dx, dy)
+    if limit > 0.0 and path > 0.0:
+        kept = exp(-path / limit)
+        p, q = dx / path * limit * (1 - kept) + p * kept, dy / path * limit * (1 - kept) + q * kept
+    size = hypot(p, q)
+    return (p / size * after, q / size * after) if size > after else (p, q)

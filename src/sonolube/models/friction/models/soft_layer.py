@@ -30,6 +30,7 @@ from sonolube.models.friction.soft_counterface import (
     mean_force,
 )
 
+_LARGE_STRAIN = 0.2  # of a layer, beyond which it is no longer linear
 _NO_FORCE = 1e-12  # mean force over the load below which a patch carries nothing
 
 
@@ -125,10 +126,12 @@ class SoftLayerModel(FrictionModel):
         layer, radius = self.layer(contact), math.sqrt(contact.nominal_area / math.pi)
         k = layer_normal_stiffness(layer, face_radius=radius)
         moving = complex(dynamic_stiffness_ratio(layer, frequency=motion.frequency))
-        amplitude = float(np.ptp(motion.displacement)) / 2
+        amplitude, indentation = float(np.ptp(motion.displacement)) / 2, motion.normal_load / k
+        large = indentation > _LARGE_STRAIN * self.layer_thickness
+        beyond = ", more than a fifth of its thickness, where it is no longer linear" if large else ""
         heat = layer_loss_power(layer, face_radius=radius, vibration_amplitude=amplitude, frequency=motion.frequency)
         return (
-            f"layer of {k:.3g} N/m at rest, indented by {1e6 * motion.normal_load / k:.3g} um, {abs(moving):.3g} times"
+            f"layer of {k:.3g} N/m at rest, indented by {1e6 * indentation:.3g} um{beyond}, {abs(moving):.3g} times"
             f" as stiff at the drive frequency; its loss takes {1e3 * float(heat):.3g} mW in contact throughout, by a"
             " uniform motion"
         )

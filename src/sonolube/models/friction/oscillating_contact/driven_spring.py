@@ -168,7 +168,7 @@ def steady_spring_period(limit: Floats, offset: float, x: Floats, y: Floats) -> 
         for k in range(n):
             before, after = limit[k] - offset, limit[k + 1] - offset
             last_p = p
-            p, q = _after_slide(p, q, before, after, x[k + 1] - x[k], y[k + 1] - y[k])
+            p, q = slide_spring(p, q, before, after, x[k + 1] - x[k], y[k + 1] - y[k])
             friction += (last_p + p) / 2
             mean_limit += (max(before, 0.0) + max(after, 0.0)) / 2
         if hypot(p - start_p, q - start_q) <= 1e-9 * mean_limit / n:
@@ -177,7 +177,7 @@ def steady_spring_period(limit: Floats, offset: float, x: Floats, y: Floats) -> 
 
 
 @kernel(**INNER)
-def _after_slide(p: float, q: float, before: float, after: float, dx: float, dy: float) -> tuple[float, float]:
+def slide_spring(p: float, q: float, before: float, after: float, dx: float, dy: float) -> tuple[float, float]:
     """Deformation of a spring after a straight slide while its limit changes from `before` to `after`."""
     if after <= 0.0:
         return 0.0, 0.0

@@ -6,7 +6,7 @@ import {Chart} from '../chart.js';
 import {fieldOf as drawnField} from '../chart-scale.js';
 import {Labelled, MaterialChoices, refusedBy, RunsChoice, TextField, typed, uploadOf, useFile} from '../fields.js';
 import {isActive, JobState, useJob, Waiting} from '../job.js';
-import {Button, capital, Card, Refusal, Select} from '../parts.js';
+import {Button, capital, Card, Refusal, Select, useInView} from '../parts.js';
 import {useRig, Workspace} from '../rig-panel.js';
 import {change, present, settle, useApp} from '../state.js';
 import {offer} from '../take-away.js';
@@ -111,7 +111,7 @@ function withPoint(chart, fields) {
 }
 
 /** Choice among names, each with its title, as a row of buttons. */
-export const Choices = ({group, legend, titles, chosen, choose}) => html`<fieldset class="choices"><legend>${legend}</legend>
+export const Choices = ({group, legend, titles, chosen, choose}) => html`<fieldset class="choices" ref=${useInView(chosen)}><legend>${legend}</legend>
   ${titles.map(([name, title]) => html`<label key=${name} class="choice"><input type="radio" name=${group} checked=${name === chosen}
     onChange=${() => choose({[group]: name})} data-test=${`${group}:${name}`} /><span>${title}</span></label>`)}</fieldset>`;
 

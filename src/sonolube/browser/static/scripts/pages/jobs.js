@@ -1,25 +1,27 @@
-/** Page Jobs: long computations with their state, results and files. */
+/** Page Jobs and runs: long computations and runs of the laboratory in one list, with their state, results and files. */
 import {html, useEffect, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {Blocks, Caveats} from '../answer.js';
 import {ask, useConnection} from '../api.js';
 import {Chart} from '../chart.js';
 import {duration, isActive, isOwn, JobProgress, progressText, secondsOf} from '../job.js';
-import {Button, classes, fileOf, Loading, Refusal, Sheet} from '../parts.js';
-import {change, useApp} from '../state.js';
+import {Button, classes, fileOf, Loading, Refusal, Select, Sheet} from '../parts.js';
+import {change, settle, useApp} from '../state.js';
+import {offer} from '../take-away.js';
 
 const [QUICK, SLOW] = [700, 5000]; // ms between looks while a job is active, and otherwise
+const KINDS = [['', 'All'], ['job', 'Computations'], ['run', 'Runs of the laboratory']];
 
-/** All jobs, looked at again and again. */
-function useJobs() {
+/** Reply to a GET, asked again and again; where there is no such address, asked once. @param {string} path @param {(content: any) => boolean} isBusy */
+function useWatched(path, isBusy) {
   const [found, setFound] = useState(null);
   const [turn, look] = useState(0);
   const {generation} = useConnection();
   useEffect(() => {
     let timer = 0; // null when no longer shown
-    ask('api/jobs').then(({content}) => {
+    ask(path).then(({content, failure}) => {
       if (timer === null) return;
       if (content) setFound(content);
-      timer = setTimeout(() => look((old) => old + 1), (content ?? found)?.jobs.some(isActive) ? QUICK : SLOW);
+      if (content || failure.kind === 'offline' || failure.kind === 'link') timer = setTimeout(() => look((old) => old + 1), isBusy(content) ? QUICK : SLOW);
     });
     return () => {
       clearTimeout(timer);
@@ -29,26 +31,49 @@ function useJobs() {
   return {found, look: () => look((old) => old + 1)};
 }
 
-/** Result of a job: figures, text, caveats, files. */
-function JobResult({id}) {
+/** What a run of the laboratory is of, as a line. */
+const ofRun = ({device, rig, protocol, seed, recordings, version}) => [version && `sonolube ${version}`, rig || device, rig && device, protocol, seed != null && `seed ${seed}`,
+  recordings > 0 && `${recordings} ${recordings === 1 ? 'recording' : 'recordings'}`].filter(Boolean).join(', ');
+
+const secondsSince1970 = (created) => (typeof created === 'number' ? created : Date.parse(created) / 1000);
+
+/** Jobs and runs as rows of one list, the latest first. */
+const listed = (jobs, runs) => [
+  ...jobs.map((job) => ({...job, kind: 'job', title: job.label || job.task, job})),
+  ...runs.map((run) => ({...run, kind: 'run', of: ofRun(run), created: secondsSince1970(run.created), seconds: run.duration ?? 0})),
+].sort((one, other) => other.created - one.created);
+
+/** Rows that the view asks for. */
+function filtered(rows, {kind, search = ''}) {
+  const words = search.toLowerCase().split(/\s+/).filter(Boolean);
+  return rows.filter((row) => (!kind || row.kind === kind)
+    && words.every((word) => [row.title, row.id, row.state, row.task, row.of].some((text) => text?.toLowerCase().includes(word))));
+}
+
+/** Result of a job, or record of a run: figures, text, caveats, files. */
+function Result({kind, id}) {
   const [reply, setReply] = useState({});
+  const [request, setRequest] = useState(null);
   useEffect(() => {
     setReply({});
-    ask(`api/jobs/${id}/result`).then(setReply);
+    ask(kind === 'job' ? `api/jobs/${id}/result` : `api/lab/runs/${id}`).then(setReply);
+    if (kind === 'job') ask(`api/jobs/${id}`).then(({content}) => setRequest(content?.request));
   }, [id]);
+  useEffect(() => (request ? offer(request.task, request.arguments) : undefined), [request]);
   const {content, failure} = reply;
   if (failure) return html`<${Refusal} text=${failure.text} role="alert" />`;
   if (!content) return html`<${Loading}>Reading the result…<//>`;
-  return html`<div data-test="job-result">
+  return html`<div data-test=${`${kind}-result`}>
     ${content.charts.filter((one) => one.chart).map((one) => html`<${Chart} key=${one.name} ...${one} />`)}
     <${Blocks} blocks=${content.blocks} />
-    <${Caveats} answer=${content} isMoving=${false} of=${id} />
+    <${Caveats} answer=${content} isMoving=${false} of=${id} hasFields=${false} />
     ${content.files?.length > 0 && html`<h3>Files</h3><ul class="caveat-list">${content.files.map((name) => html`<li key=${name} class="is-file">
       <a href=${fileOf(id, name)} download=${name.split('/').at(-1)}>${name}</a></li>`)}</ul>`}
   </div>`;
 }
 
-function Job({job, isOpen, look}) {
+/** What stops or deletes a job. */
+function JobButtons({job, look, isOpen}) {
   const [isAsked, setAsked] = useState(false);
   const name = job.label || job.task;
   const remove = () => {
@@ -56,35 +81,53 @@ function Job({job, isOpen, look}) {
     ask(`api/jobs/${job.id}`, {method: 'DELETE'}).then(look);
   };
   const cancel = () => ask(`api/jobs/${job.id}/cancel`, {body: {}}).then(look);
-  return html`<li class=${classes('card job', {'is-open': isOpen})} data-test=${`job:${job.id}`}>
-    <div><h2>${name}</h2>
-      <p class="hint">${job.task}, ${new Date(job.created * 1000).toLocaleString(undefined, {dateStyle: 'medium', timeStyle: 'short'})}</p>
-      <p class="row"><span class=${`tag${job.state === 'done' ? ' is-new' : ''}`} data-test="job-state">${job.state}</span>
+  return html`${isActive(job) && isOwn(job) && html`<${Button} onClick=${cancel} aria-label=${`Cancel ${name}`} data-test="cancel-job">Cancel<//>`}
+    ${isOwn(job) && html`<${Button} kind="button is-quiet" onClick=${isAsked ? remove : () => setAsked(true)} onBlur=${() => setAsked(false)}
+      aria-label=${`${isAsked ? 'Delete for good:' : 'Delete'} ${name}`} data-test="delete-job">${isAsked ? 'Delete for good' : 'Delete'}<//>`}`;
+}
+
+function Row({row, isOpen, look}) {
+  const {kind, id, title, job} = row;
+  const open = () => change({view: {job: null, run: null, ...(!isOpen && {[kind]: id})}});
+  return html`<li class=${classes('card job', {'is-open': isOpen})} data-test=${`${kind}:${id}`}>
+    <div><h2>${title}</h2>
+      <p class="hint">${job ? row.task : `run ${id}`}, ${new Date(row.created * 1000).toLocaleString(undefined, {dateStyle: 'medium', timeStyle: 'short'})}</p>
+      ${row.of && html`<p class="hint" data-test="of">${row.of}</p>`}
+      <p class="row"><span class=${`tag${['done', 'completed'].includes(row.state) ? ' is-new' : ''}`} data-test=${`${kind}-state`}>${row.state}</span>
         ${isActive(job) && html`<${JobProgress} job=${job} /><span>${progressText(job)}</span>`}
-        ${secondsOf(job) >= 0.05 && html`<span class="hint">${duration(secondsOf(job))}</span>`}</p>
-      <${Refusal} text=${job.reason} /></div>
+        ${(job ? secondsOf(job) : row.seconds) >= 0.05 && html`<span class="hint">${duration(job ? secondsOf(job) : row.seconds)}</span>`}</p>
+      <${Refusal} text=${row.reason} /></div>
     <div class="row">
-      ${job.state === 'done' && html`<${Button} aria-expanded=${isOpen} aria-label=${`${isOpen ? 'Close' : 'Open'} ${name}`}
-        onClick=${() => change({view: {job: isOpen ? null : job.id}})} data-test="open-job">${isOpen ? 'Close' : 'Open'}<//>`}
-      ${isActive(job) && isOwn(job) && html`<${Button} onClick=${cancel} aria-label=${`Cancel ${name}`} data-test="cancel-job">Cancel<//>`}
-      ${isOwn(job) && html`<${Button} kind="button is-quiet" onClick=${isAsked ? remove : () => setAsked(true)} onBlur=${() => setAsked(false)}
-        aria-label=${`${isAsked ? 'Delete for good:' : 'Delete'} ${name}`} data-test="delete-job">${isAsked ? 'Delete for good' : 'Delete'}<//>`}
+      ${(!job || job.state === 'done') && html`<${Button} aria-expanded=${isOpen} aria-label=${`${isOpen ? 'Close' : 'Open'} ${title}`}
+        onClick=${open} data-test=${`open-${kind}`}>${isOpen ? 'Close' : 'Open'}<//>`}
+      ${job && html`<${JobButtons} job=${job} look=${look} isOpen=${isOpen} />`}
     </div>
-    ${isOpen && html`<div class="job-opened"><${JobResult} id=${job.id} /></div>`}
+    ${isOpen && html`<div class="job-opened"><${Result} kind=${kind} id=${id} /></div>`}
   </li>`;
 }
 
 export default function Jobs() {
-  const {state} = useApp();
-  const {found, look} = useJobs();
-  return html`<${Sheet} title="Jobs">
-    <p class="hint">Computations that take longer than a second. They go on when this page is closed, and are found again after the workbench is
-      started again.${found && ` Each is a folder in sonolube/${found.folder}, in the folder in which this computer keeps states of programs
-      (XDG_STATE_HOME, or ~/.local/state); it is deleted ${found.days} days after its end, or here.`}</p>
+  const {state: {view}} = useApp();
+  const {found, look} = useWatched('api/jobs', (content) => content?.jobs.some(isActive));
+  const {found: lab} = useWatched('api/lab/runs', () => false);
+  const rows = found ? listed(found.jobs, lab?.runs ?? []) : [];
+  const shown = filtered(rows, view);
+  const set = (name, options) => (event) => change({view: {[name]: event.target.value || null}}, options);
+  return html`<${Sheet} title="Jobs and runs">
+    <p class="hint">Computations that take longer than a second, and runs of the laboratory. They go on when this page is closed.</p>
     ${!found && html`<${Loading}>Reading the jobs…<//>`}
-    ${found && !found.jobs.length && html`<p class="notice" data-test="no-jobs">There are no jobs. The start-up of a rig, on the page Explore, and the
-      page Dissertation start some.</p>`}
-    ${found && html`<ul class="jobs" data-test="jobs">${found.jobs.map((job) => html`<${Job} key=${job.id} job=${job}
-      isOpen=${state.view.job === job.id && job.state === 'done'} look=${look} />`)}</ul>`}
+    ${found && !rows.length && html`<p class="notice" data-test="no-jobs">There are no jobs or runs. The start-up of a rig, on the page Explore, and the page
+      Dissertation start jobs; the page Lab starts runs.</p>`}
+    ${rows.length > 0 && html`<div class="filters" role="search" aria-label="Jobs and runs">
+      <div><label for="job-search">Search</label><input type="text" id="job-search" value=${view.search ?? ''} onInput=${set('search', {replace: true})}
+        onBlur=${settle} onChange=${settle} autocomplete="off" maxlength="200" data-test="job-search" /></div>
+      <div><label for="job-kind">Kind</label><${Select} id="job-kind" choices=${KINDS} value=${view.kind ?? ''} onChange=${set('kind')} data-test="job-kind" /></div>
+      <p role="status" data-test="job-count">${shown.length} of ${rows.length}</p></div>
+    ${lab?.caveats?.map((line) => html`<p key=${line} class="notice is-warning">${line}</p>`)}
+    <ul class="jobs" data-test="jobs">${shown.map((row) => html`<${Row} key=${row.kind + row.id} row=${row} look=${look}
+      isOpen=${view[row.kind] === row.id && (row.kind === 'run' || row.state === 'done')} />`)}</ul>`}
+    ${found && html`<details><summary>Where they are kept</summary><p class="hint">Each computation is a folder in sonolube/${found.folder}, in the folder in
+      which this computer keeps states of programs (XDG_STATE_HOME, or ~/.local/state); it is deleted ${found.days} days after its end, or here.${lab?.folder
+      && ` Each run is a folder in ${lab.folder}, where the workbench was started; it is deleted by you alone.`}</p></details>`}
   <//>`;
 }

@@ -1,0 +1,116 @@
+"""Standing rig, watched by a thread while an operator works at it: temperature, and that its outputs are off."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from math import inf
+from threading import Event as Signal, Thread
+from typing import Final
+
+from sonolube.facts.protocol import Limits
+from sonolube.laboratory.block import BLOCK_DURATION, Block
+from sonolube.laboratory.devices import Devices
+from sonolube.laboratory.interlocks import IDLE_RATE, Interlock, first_trip
+from sonolube.laboratory.states import Event, RunControl, RunEnded, ending
+from sonolube.laboratory.watching import RunWatcher, told
+from sonolube.text.units import format_si
+
+_VIRTUAL: Final = 2.0  # s, of the time of virtual devices
+_OFF_SHARE: Final = 0.05  # of the limit of the voltage, below which the drive counts as off
+_OFF_VOLTAGE: Final = 1.0  # V, at least, for the offsets of monitors
+_STILL_SHARE: Final = 0.01  # of the speed of the motor, below which the disc counts as at rest
+SETTLING: Final = {"drive": 1.0, "motor": 10.0}
+"""Time in which amplifier and disc come to rest. [s]"""
+
+
+class StandingRig:
+    """Watch over devices whose motor and drive were switched off.
+
+    Parameters
+    ----------
+    devices : Devices
+        Virtual ones, whose time does not go on by itself, are watched for two seconds.
+    locks : sequence of Interlock
+        Of the protocol; those of the temperature hold here too.
+    limits : Limits
+    sample_rate : float
+        Highest that the protocol uses. [Hz]
+    watcher : RunWatcher, optional
+        Shown every block.
+    """
+
+    def __init__(
+        self,
+        devices: Devices,
+        locks: Sequence[Interlock],
+        limits: Limits,
+        *,
+        sample_rate: float,
+        watcher: RunWatcher | None = None,
+    ) -> None:
+        self._watcher = watcher
+        self._acquisition = devices.acquisition
+        channels, self._lasts = devices.acquisition.channels, inf if devices.clock is None else _VIRTUAL
+        self._off = [(what, lock) for what, lock in off_bounds(devices, limits) if lock.channel.name in channels]
+        self._always = [lock for lock in locks if lock.channel.is_watched_at_rest and lock.channel.name in channels]
+        self._names = [lock.channel.name for lock in (*self._always, *(lock for _, lock in self._off))]
+        self._wanted_rate, self._rate, self._time = min(sample_rate, IDLE_RATE), 0.0, 0.0
+        self._failure: BaseException | None = None
+
+    @contextmanager
+    def watched(self, control: RunControl) -> Iterator[None]:
+        """Watch inside a `with` block, by a thread, from when outputs were switched off."""
+        if not self._names:
+            yield
+            return
+        self._rate, self._time = self._acquisition.start(self._names, sample_rate=self._wanted_rate), 0.0
+        ended = Signal()
+        thread = Thread(target=self._look_on, args=(ended, control), daemon=True, name="sonolube standing rig")
+        thread.start()
+        try:
+            yield
+        finally:
+            if self._lasts == inf:
+                ended.set()
+            thread.join()
+            self._acquisition.stop()
+        if self._failure is not None:
+            raise self._failure
+
+    def _look_on(self, ended: Signal, control: RunControl) -> None:
+        """Read block after block until the end, or until something is wrong."""
+        try:
+            while not ended.is_set() and self._time < self._lasts:
+                if trip := self._look():
+                    raise RunEnded(Event.TRIP, trip)
+        except BaseException as failure:  # whatever a driver raises, the rig is watched no more
+            self._failure = failure
+            control.stop(ending(failure)[1])
+
+    def _look(self) -> str:
+        """Read a block, and return what is wrong; empty where nothing is."""
+        block = self._acquisition.read(max(1, round(BLOCK_DURATION * self._rate)))
+        self._time += block.samples / self._rate
+        told(self._watcher, lambda watcher: watcher.takes_aside(self._names, block))
+        return first_trip(block, self._names, self._always) or still_on(block, self._names, self._off, self._time)
+
+
+def off_bounds(devices: Devices, limits: Limits) -> list[tuple[str, Interlock]]:
+    """Bounds of channels that show whether motor or drive are off, with what is off within them."""
+    channels = devices.channels
+    volts = max(_OFF_SHARE * limits.voltage_maximum, _OFF_VOLTAGE)
+    at_rest = {
+        "voltage": ("drive", volts),
+        "voltage_peak_to_peak": ("drive", 2 * volts),
+        "rotation_speed": ("motor", _STILL_SHARE * devices.motor.rotation_speed_maximum),
+    }
+    return [(what, Interlock(channels[name], most)) for name, (what, most) in at_rest.items() if name in channels]
+
+
+def still_on(block: Block, names: Sequence[str], off: Sequence[tuple[str, Interlock]], stands: float) -> str:
+    """Why an output that was switched off some time ago, in s, counts as on by a block; empty where none does."""
+    for what, lock in off:
+        trip = first_trip(block, names, [lock]) if stands > SETTLING[what] else ""
+        if trip:
+            most = format_si(lock.limit, lock.channel.unit)
+            return f"the {what} was switched off, but {trip.partition(';')[0]} (off is up to {most}): cut the power"
+    return ""

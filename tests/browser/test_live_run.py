@@ -1,0 +1,88 @@
+"""Live state of a run: slices of blocks, limits, and readers that are slow."""
+
+import numpy as np
+import pytest
+from hypothesis import given, strategies as st
+from pytest import approx
+from tests.browser.laboratory import until
+
+from sonolube.browser.lab.live_run import SLICE_DURATION, LiveRun, slices_of
+from sonolube.facts.protocol import Prompt
+from sonolube.laboratory import Block, Channel, Interlock, RunControl
+
+
+def block(values: np.ndarray, *, sample_rate: float, first: int = 0) -> Block:
+    return Block(first_sample=first, sample_rate=sample_rate, values=values)
+
+
+@given(samples=st.integers(1, 400), sample_rate=st.sampled_from([400.0, 1000.0, 7999.0]), seed=st.integers(0, 99))
+def test_slices_hold_every_sample_once(samples: int, sample_rate: float, seed: int) -> None:
+    values = np.random.default_rng(seed).normal(size=(samples, 2))
+    found = slices_of(("a", "b"), block(values, sample_rate=sample_rate), time=2.0)
+    for place, name in enumerate(("a", "b")):
+        own = values[:, place]
+        assert min(each[name][0] for _, each in found) == own.min()
+        assert max(each[name][1] for _, each in found) == own.max()
+        assert all(
+            each[name][0] <= each[name][2] <= each[name][1] or each[name][2] == approx(each[name][0])
+            for _, each in found
+        )
+    times = [time for time, _ in found]
+    assert times == sorted(times)
+    assert 2.0 < times[0] <= 2.0 + SLICE_DURATION
+    assert times[-1] < 2.0 + samples / sample_rate
+
+
+def test_a_block_of_50_ms_gives_two_slices_whose_means_are_those_of_its_halves() -> None:
+    ramp = np.arange(20.0)[:, np.newaxis]
+    found = slices_of(("a",), block(ramp, sample_rate=400.0), time=1.0)
+    assert found == [(approx(1.0125), {"a": (0.0, 9.0, 4.5)}), (approx(1.0375), {"a": (10.0, 19.0, 14.5)})]
+    assert slices_of(("a",), block(np.zeros((0, 1)), sample_rate=400.0), time=1.0) == []
+
+
+def live_run() -> LiveRun:
+    live = LiveRun({"voltage_maximum": 30.0}, RunControl())
+    channels = {
+        "friction_force": Channel(name="friction_force", quantity="friction_force"),
+        "temperature": Channel(name="temperature", quantity="temperature"),
+    }
+    locks = [Interlock(channels["friction_force"], 10.0), Interlock(channels["temperature"], 350.0)]
+    live.begins(channels, locks)
+    return live
+
+
+def test_limits_are_told_by_the_way_from_rest() -> None:
+    live = live_run()
+    names = ("friction_force", "temperature")
+    live.takes(names, block(np.array([[0.0, 300.0], [-5.0, 300.0]]), sample_rate=400.0), time=0.0)
+    until(lambda: bool(live.frame(-1)[0]["channels"]))
+    live.takes_aside(names, block(np.array([[1.0, 310.0]]), sample_rate=400.0))  # of a rig that stands
+    until(lambda: live.frame(-1)[0]["limits"][1]["value"] == 310.0)
+    frame, last = live.frame(-1)
+    force, temperature = frame["limits"]
+    assert (force["value"], force["share"]) == (1.0, approx(0.1))
+    assert temperature["share"] == approx(10 / 50)
+    assert last == 0  # the standing rig has no time of the protocol
+
+
+def test_a_slow_reader_gets_the_latest_slices_and_is_told_what_it_missed() -> None:
+    live = live_run()
+    for number in range(1300):
+        live.takes(("a",), block(np.full((20, 1), number), sample_rate=400.0, first=20 * number), time=0.05 * number)
+        if number % 50 == 49:
+            until(lambda number=number: live.frame(-1)[1] == 2 * number + 1)  # type: ignore[misc]
+    first, last = live.frame(-1)
+    assert (len(first["channels"]["a"]), last) == (2400, 2599)
+    behind, _ = live.frame(99)
+    assert (len(behind["channels"]["a"]), behind["dropped"]) == (2400, 100)
+    now, _ = live.frame(last)
+    assert (now["channels"], now["dropped"]) == ({}, 0)
+
+
+@pytest.mark.parametrize("text", ["", "Wipe the pin."])
+def test_only_the_prompt_that_is_shown_is_confirmed(text: str) -> None:
+    control = RunControl()
+    live = LiveRun({}, control)
+    assert live.answer(text, is_done=True) == "nothing is asked now"
+    control.stop("ended")
+    assert not live.ask(Prompt(text="Mount the pin."))
