@@ -55,14 +55,16 @@ function Result({kind, id}) {
   const [reply, setReply] = useState({});
   const [request, setRequest] = useState(null);
   useEffect(() => {
+    const reading = new AbortController(); // which closing ends
     setReply({});
-    ask(kind === 'job' ? `api/jobs/${id}/result` : `api/lab/runs/${id}`).then(setReply);
+    ask(kind === 'job' ? `api/jobs/${id}/result` : `api/lab/runs/${id}`, {signal: reading.signal}).then(setReply);
     if (kind === 'job') ask(`api/jobs/${id}`).then(({content}) => setRequest(content?.request));
+    return () => reading.abort();
   }, [id]);
   useEffect(() => (request ? offer(request.task, request.arguments) : undefined), [request]);
   const {content, failure} = reply;
   if (failure) return html`<${Refusal} text=${failure.text} role="alert" />`;
-  if (!content) return html`<${Loading}>Reading the result…<//>`;
+  if (!content) return html`<${Loading}>Reading the ${kind === 'run' ? 'recording; Close ends it' : 'result'}…<//>`;
   return html`<div data-test=${`${kind}-result`}>
     ${content.charts.filter((one) => one.chart).map((one) => html`<${Chart} key=${one.name} ...${one} />`)}
     <${Blocks} blocks=${content.blocks} />
