@@ -164,7 +164,13 @@ def test_a_view_refuses_what_is_no_number(wrong: dict[str, Any], long: dict[str,
 
 
 def test_statements_are_refused_by_their_columns(long: dict[str, str], places: Places) -> None:
-    for wrong in ({"columns": []}, {"columns": {"a": 1}}, {"columns": {}, "rows": 3}, {"columns": {"time (s)": "N"}}):
+    given_wrong: tuple[dict[str, Any], ...] = (
+        {"columns": []},
+        {"columns": {"a": 1}},
+        {"columns": {}, "rows": 3},
+        {"columns": {"time (s)": "N"}},
+    )
+    for wrong in given_wrong:
         with raises(InvalidInput) as refused:
             file_view({"file": long} | wrong, places)
         assert refused.value.key in ("columns", "rows", "time (s)")
