@@ -10,7 +10,7 @@ from playwright.sync_api import Browser, Page, expect
 from tests.browser.pages import at_rest, opened, show
 from tests.browser.recordings import write_recordings
 from tests.browser.test_pages import faults_of_access
-from tests.browser.walks import HANDS, Mouse
+from tests.browser.walks import HANDS, Keyboard, Mouse
 from tests.browser.workbench import Served
 from tests.chromium import CHROMIUM
 
@@ -80,7 +80,7 @@ def test_recordings_lead_to_a_prediction_with_own_runs(hand: type[Mouse], page: 
 def drag_end(walk: Mouse, test: str, pixels: float) -> None:
     """Drag the end of a part, or move it by the arrow keys."""
     handle = walk.page.get_by_test_id(test)
-    if walk.name == "keyboard":
+    if isinstance(walk, Keyboard):
         walk.press(test, "Shift+ArrowLeft")
         walk.page.keyboard.press("Tab")
         return

@@ -61,9 +61,9 @@ function Parts({marks, isFound, enter, range: [from, to]}) {
   const write = (at, voltage) => enter(marks.map((mark, place) => (place === at ? {...mark, voltage} : mark)));
   return html`<div class="data-parts" role="group" aria-label="Parts">
     ${isFound && html`<p class="hint">Steps as found in the voltage; drag an end to state them.</p>`}
-    <ul>${named(marks).map((mark) => html`<li key=${mark.id} class="row"><span class=${`tag is-${mark.kind}`}>${mark.kind}</span> ${short(mark.from, 5)} to ${short(mark.to, 5)} s
-      ${mark.kind === 'step' && (isFound ? mark.voltage : html`<${TextField} id=${`voltage-${mark.id}`} text=${mark.voltage} unit="V" aria-label=${`Voltage of ${mark.id}`}
-        data-test=${`voltage:${mark.id}`} onText=${(text, isMoving) => !isMoving && write(mark.at, text)} onSettle=${settle} />`)}
+    <ul>${named(marks).map((mark) => html`<li key=${mark.id} class="row"><span class=${`tag is-${mark.kind}`}>${mark.kind}</span> ${short(mark.from, 5)} to ${short(mark.to, 5)} s${isFound && mark.voltage && `: ${mark.voltage}`}
+      ${mark.kind === 'step' && !isFound && html`<${TextField} id=${`voltage-${mark.id}`} text=${mark.voltage} unit="V" aria-label=${`Voltage of ${mark.id}`}
+        data-test=${`voltage:${mark.id}`} onText=${(text, isMoving) => !isMoving && write(mark.at, text)} onSettle=${settle} />`}
       ${!(isFound && mark.kind === 'step') && html`<${Button} kind="small" onClick=${() => enter(marks.filter((_, at) => at !== mark.at))} aria-label=${`Remove ${mark.id}`}>remove<//>`}</li>`)}</ul>
     <p class="row">${PARTS.map(([kind, title]) => html`<${Button} key=${kind} onClick=${() => add(kind)} data-test=${`add:${kind}`}
       disabled=${kind === 'part' && marks.some((mark) => mark.kind === kind)}>${title}<//>`)}</p></div>`;
