@@ -26,13 +26,13 @@ const WORKS = {
   foreign: {title: 'Modes of another program', task: 'modes', accept: '.unv,.uff,.frd,.csv,.toml', entry: 'shapes', choose: 'Choose a file of modes…', args: {},
     texts: [['tip', 'Nodes or points x,y,z of the contact', '', list], ['direction', 'From the tip to the other body, such as +z', ''],
       ['port', 'Nodes or points at both ends of the stack', '', list], ['force_per_volt', 'Blocked force of the stack per volt', '12 N/V'],
-      ['clamped_capacitance', 'Capacitance with all modes held', '4.2 nF'], ['quality_factor', 'Quality factor of modes without damping', ''],
-      ['modal_mass', 'Modal mass where the file has none', '1 kg'], ['length_unit', 'Unit of length of the file', 'mm'], ['force_unit', 'Unit of force of the file', 'N']]},
+      ['clamped_capacitance', 'Capacitance with all modes held', '4.2 nF'], ['quality_factor', 'Quality factor of modes without damping', ''], ['static_compliance', 'Static compliance of the contact', ''],
+      ['modal_mass', 'Modal mass where the file has none', '1 kg'], ['length_unit', 'Unit of length of the file', 'mm'], ['force_unit', 'Unit of force of the file', 'N'],
+      ['displacement_per_volt', 'Static displacement of the contact per volt', '']]},
 };
 const STEP = {accept: '.step,.stp', entry: 'step', choose: 'Choose a STEP file…'};
 const SHAPES = 'mode-shapes.json';
-const DRAWN = 0.08; // of the longest side, for the largest displacement
-const SIZE = 'size.';
+const [DRAWN, SIZE] = [0.08, 'size.']; // the largest displacement over the longest side; entries of sizes
 
 /** What the view asks for: its work, part, and arguments; these are null while a file is missing. */
 function askedOf(view, known) {
