@@ -16,6 +16,7 @@ from tests.browser.workbench import served
 from tests.laboratory.test_added_drivers import MAP, PROTOCOL, packages as packages_of_acme, written
 
 import sonolube as sl
+from sonolube.browser.lab import routes
 from sonolube.browser.lab.runner_records import laboratory_folder
 from sonolube.cli import main
 from sonolube.example_files import example_file
@@ -217,6 +218,24 @@ def test_the_page_of_a_run_stops_it_without_scripts_when_the_server_is_gone(
         ended = lab.state()["run"]
     assert (ended["state"], ended["outcome"]) == ("safe", "stopped")
     assert "while asked: Bring the pin into contact." in ended["reason"]
+    assert notes_of(record_of(tmp_path, ended))[-2:] == ["stop", "off"]
+
+
+def test_a_run_whose_process_hangs_is_told_and_stopped_by_a_signal(
+    lab: Asked, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = lab.start(LONG)
+    lab.run_when(lambda run: run["prompt"])
+    monkeypatch.setattr(routes, "_LOOKING", 0.5)
+    monkeypatch.setattr(routes, "_STOPPING", 0.5)
+    os.kill(run["process"], signal.SIGSTOP)
+    hung = lab.state()["run"]
+    assert (hung["state"], hung["is_lost"], bool(hung["stop_link"])) == ("paused", False, True)
+    assert "does not answer" in hung["reason"]
+    assert lab.post("/api/lab/stop")[0] == 200
+    os.kill(run["process"], signal.SIGCONT)
+    ended = lab.run_when(lambda run: run["is_ended"])
+    assert (ended["state"], ended["outcome"]) == ("safe", "stopped")
     assert notes_of(record_of(tmp_path, ended))[-2:] == ["stop", "off"]
 
 

@@ -39,6 +39,8 @@ from sonolube.operating_system import ON_WINDOWS
 
 _STARTING: Final = 120.0  # s, until the process of a run listens
 _POLL: Final = 0.05  # s
+_STOPPING: Final = 10.0  # s, until a signal stops a run whose process does not answer
+_LOOKING: Final = 3.0  # s, for the state of a run
 _LOOPBACK: Final = ("localhost", "127.0.0.1")
 _PART: Final = 2**20  # bytes
 _LOST: Final = (
@@ -64,6 +66,7 @@ class Laboratory:
         self._hold = Hold(folder)
         self._devices: dict[str, Any] | None = None
         self._starting = asyncio.Lock()
+        self._seen: dict[str, Any] = {}  # of the run that answered last
 
     def routes(self) -> list[Route]:
         """Routes below `/api/lab`."""
@@ -197,7 +200,7 @@ class Laboratory:
         """State of the run after it was asked to stop, by anybody."""
         record = self._require_at_work()
         try:
-            await asked(record, "POST", "/stop")
+            await asked(record, "POST", "/stop", longest=_STOPPING)
         except NoAnswer:
             if ON_WINDOWS:  # where a signal would end the process at once, and its outputs stay on
                 raise
@@ -263,7 +266,7 @@ class Laboratory:
         fixed = {"id": record.id, "process": record.process, "stop_link": ""}
         if record.is_alive:
             with suppress(InvalidInput):
-                found = await asked(record, "GET", "/status")
+                found = self._seen = await asked(record, "GET", "/status", longest=_LOOKING) | {"id": record.id}
                 host = (request.url.hostname or "").lower()
                 link = record.link(host if host in _LOOPBACK else "127.0.0.1")
                 return found | fixed | {"stop_link": "" if found.get("is_ended") else link}
@@ -273,7 +276,8 @@ class Laboratory:
         if record.is_lost:
             return _bare(record) | {"state": "lost", "is_lost": True} | fixed
         silent = {"reason": f"its process, {record.process}, does not answer; stop it here, or by its own page"}
-        return _bare(record) | silent | fixed | {"stop_link": record.link()}
+        known = self._seen if self._seen.get("id") == record.id else _bare(record)
+        return known | silent | fixed | {"stop_link": record.link()}
 
     def _records(self) -> list[RunnerRecord]:
         """Records of runners that have listened or ended, the latest first."""

@@ -19,9 +19,14 @@ class NoAnswer(InvalidInput):
 
 
 async def asked(
-    record: RunnerRecord, method: str, path: str, content: Mapping[str, Any] | None = None
+    record: RunnerRecord,
+    method: str,
+    path: str,
+    content: Mapping[str, Any] | None = None,
+    *,
+    longest: float = _ANSWERING,
 ) -> dict[str, Any]:
-    """Answer of the process of a run.
+    """Answer of the process of a run within a time. [s]
 
     Raises
     ------
@@ -31,7 +36,7 @@ async def asked(
         If it refuses.
     """
     try:
-        async with asyncio.timeout(_ANSWERING):
+        async with asyncio.timeout(longest):
             reader, writer = await _opened(record, method, path, content)
             try:
                 status = await _head(reader)
