@@ -65,7 +65,7 @@ def _pages(page: Page, workbench: Served) -> Shots:
 
 
 def laboratory(page: Page, workbench: Served) -> Shots:
-    """The page Lab with a protocol along time, and with a run at its voltages."""
+    """The page Lab with a protocol along time, and with a run at its voltages; and the page of the run itself."""
     show(page, workbench, "tribometer", {}, where="lab")
     page.get_by_test_id("step:7").click()
     page.get_by_test_id("plan").evaluate("plan => plan.scrollIntoView()")
@@ -78,7 +78,11 @@ def laboratory(page: Page, workbench: Served) -> Shots:
     expect(page.get_by_test_id("run-time")).to_contain_text("21 s of")
     page.get_by_test_id("run").evaluate("run => run.scrollIntoView()")
     yield "lab", page.screenshot()
-    page.get_by_test_id("stop").click()
+    own = page.context.browser.new_page(viewport={"width": 640, "height": 620})  # type: ignore[union-attr]
+    own.goto(str(page.get_by_test_id("stop-page").get_attribute("href")))
+    yield "stop", own.screenshot()
+    own.get_by_role("button", name="Stop").click()
+    own.close()
     expect(page.get_by_test_id("stop")).to_be_hidden()
 
 

@@ -25,6 +25,7 @@ _AT_ONCE: Final = 300  # slices of one frame, which keeps the thread of the run 
 _WAITING: Final = 64  # blocks that were not yet reduced
 _MAX_SLICES: Final = 64  # of one block
 _POLL: Final = 0.02  # s
+_LAST: Final = 50  # looks at the blocks that wait at the end
 _ASKED: Final = 0.1  # s, between two looks at requests to end while an operator is asked
 _TRIPS: Final = 20
 
@@ -119,7 +120,11 @@ class LiveRun:
         return ""
 
     def end(self, state: str, outcome: str, reason: str) -> None:
-        """Take the end of the run."""
+        """Take the end of the run, its last blocks reduced."""
+        wait = Signal()
+        for _ in range(_LAST):
+            if self._waiting:
+                wait.wait(_POLL)
         self._state, self._outcome, self._reason = state, outcome, reason
         self._prompt = None
         self.has_ended.set()

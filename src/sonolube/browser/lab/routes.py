@@ -99,11 +99,7 @@ class Laboratory:
 
     async def _shown(self, request: Request, holder: str) -> Response:
         """State of the laboratory for a tab."""
-        if self._devices is None:
-            status, found = await self._pool.answer("lab_devices", {}, self._places)
-            if status != 200:
-                return json_response(found, status=status)
-            self._devices = found
+        devices = await self._known_devices()
         record, lost = self._latest(), self._lost()
         state = {
             "runs_folder": Path(self._places.runs).name,
@@ -114,11 +110,27 @@ class Laboratory:
             if lost is None
             else {"id": lost.id, "text": _LOST.format(title=str(lost.about.get("title", lost.id)))},
         }
-        return json_response(self._devices | state)
+        return json_response(devices | state)
+
+    async def _known_devices(self) -> dict[str, Any]:
+        """Devices and protocols, which a worker has read once.
+
+        Raises
+        ------
+        InvalidInput
+            If the map of devices cannot be read any more.
+        """
+        if self._devices is None:
+            status, found = await self._pool.answer("lab_devices", {}, self._places)
+            if status != 200:
+                raise InvalidInput(str(found.get("text", "")))
+            self._devices = found
+        return self._devices
 
     async def _take(self, request: Request) -> Response:
         """State, after the hold was taken."""
         holder = _holder(await content_of(request))
+        await self._known_devices()  # which may take a worker longer than a hold lasts
         self._hold.take(holder)
         return await self._shown(request, holder)
 
@@ -139,6 +151,8 @@ class Laboratory:
             if status != 200:
                 return json_response(plan, status=status)
             record = await self._spawned(plan)
+        with suppress(InvalidInput):
+            self._hold.take(_holder(content))  # of which nothing was heard while this took
         link = record.link()
         sys.stdout.write(f"A run has started. It can be stopped at {link}\n")
         sys.stdout.flush()
