@@ -140,12 +140,11 @@ def laboratory(page: Page, workbench: Served) -> Shots:
     expect(page.get_by_test_id("run-time")).to_contain_text("21 s of")
     page.get_by_test_id("run").evaluate("run => run.scrollIntoView()")
     yield "lab", page.screenshot()
-    link = page.get_by_test_id("stop-page").get_attribute("href")
     own = page.context.browser.new_page(viewport={"width": 640, "height": 620})  # type: ignore[union-attr]
-    own.goto(str(link))
+    own.goto(str(page.get_by_test_id("stop-page").get_attribute("href")))
     yield "stop", own.screenshot()
+    own.get_by_role("button", name="Stop").click()
     own.close()
-    page.get_by_test_id("stop").click()
     expect(page.get_by_test_id("stop")).to_be_hidden()
 
 
