@@ -105,7 +105,9 @@ def test_a_design_of_the_front_is_set_into_the_rig(
     expect(page.get_by_test_id(f"row:{last}")).to_have_class(re.compile("is-chosen"))
     walk.picture("front")
     plot = page.get_by_test_id("designs").get_by_test_id("plot:0").first
+    page.mouse.move(2, 2)
     plot.focus()
+    expect(page.locator(".design.is-read")).to_have_count(0)
     page.keyboard.press("ArrowDown")
     expect(page.locator(".design.is-read")).to_have_count(1)
     page.keyboard.press("Enter")
