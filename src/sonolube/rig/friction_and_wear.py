@@ -25,7 +25,7 @@ from sonolube.models.friction.models import MeanGap
 from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, model_friction
 from sonolube.models.wear import DEFAULT_WEAR_MODEL, WEAR_MODELS, cube_wear_rate, vibrating_cube_wear_rate
 from sonolube.rig.record import Rig
-from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
+from sonolube.rig.resolved_rig import PRESSED_LAYER, ResolvedRig, resolved_rig
 from sonolube.text.units import format_si
 
 ANY_FREQUENCY = 1.0
@@ -328,12 +328,9 @@ def decay_length_caveat(rig: Rig | ResolvedRig, *, vibration_amplitude: float | 
 
 def resting_caveats(resolved: ResolvedRig, *, vibration_amplitude: float | None = None) -> tuple[str, ...]:
     """Caveats of the contact of a rig under its load, that of its decay length included."""
-    if not resolved.separation > 0:
-        return (
-            "the load presses the mean planes of this roughness together: friction is that of the soft layer alone",
-        )
     caveat = decay_length_caveat(resolved, vibration_amplitude=vibration_amplitude)
-    own = contact_caveats(resolved.rig.contact, separation=resolved.separation)
+    d = resolved.separation
+    own = contact_caveats(resolved.rig.contact, separation=d) if d > 0 else (PRESSED_LAYER,)
     return (*own, *(() if caveat is None else (caveat,)))
 
 

@@ -20,6 +20,9 @@ from sonolube.rig.record import AMPLITUDE_SOURCES, AmplitudeSource, Rig
 from sonolube.rig.vibration_direction import VibrationDirection
 from sonolube.text.units import format_si
 
+PRESSED_LAYER = "the load presses the mean planes of this roughness together: friction is that of the soft layer alone"
+"""Caveat of a soft layer whose roughness the load closes."""
+
 _POINTS = 2101  # of the table of a contact's force: 50 for each standard deviation of summit heights
 
 

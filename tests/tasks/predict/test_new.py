@@ -8,7 +8,7 @@ import numpy as np
 from pytest import approx, mark, raises
 
 import sonolube as sl
-from sonolube.errors import InvalidInput, UnknownName
+from sonolube.errors import InvalidInput, SonolubeError, UnknownName
 from sonolube.facts.materials import material
 from sonolube.models.contact import layer_normal_stiffness
 from sonolube.models.friction import SoftLayerModel
@@ -110,6 +110,15 @@ def test_a_thin_felt_is_as_stiff_as_its_oedometric_modulus_says() -> None:
     winkler = E * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) * np.pi * 0.03**2 / 0.5e-3
     k = layer_normal_stiffness(model.layer(rig.contact), face_radius=0.03)
     assert k == approx(winkler, rel=0.03)
+
+
+def test_a_layer_that_is_pressed_hard_is_computed_and_says_that_it_is_no_longer_linear() -> None:
+    felt = KNOWN | {"pin": "felt", "disc": "glass", "shape": "flat 3 mm"}
+    text = str(sl.friction(sl.new(**felt, layer_thickness="3 mm").rig))
+    assert "presses the mean planes of this roughness together" in text
+    assert "more than a fifth of its thickness" in " ".join(text.split())
+    with raises(SonolubeError, match="leaves no separation between the surfaces"):
+        sl.friction(sl.new(**felt, decay_length="0.2 um").rig.replace("friction.model", "asperity_stick_slip"))
 
 
 def test_a_thickness_of_a_hard_body_or_within_the_plane_is_refused() -> None:
