@@ -6,6 +6,7 @@ from contextvars import ContextVar
 from functools import update_wrapper
 from inspect import Parameter as Argument, Signature, cleandoc, signature
 from math import inf, isfinite
+from numbers import Real
 from types import NoneType
 from typing import Any, Generic, Literal, NoReturn, ParamSpec, TypeVar, get_args, get_origin, get_type_hints, overload
 
@@ -13,7 +14,7 @@ from sonolube.errors import InvalidInput, SonolubeError, UnknownName
 from sonolube.former_names import moved_module
 from sonolube.tasks.answer import Answer
 from sonolube.tasks.files import private_files, with_names_only
-from sonolube.tasks.parameters import Call, File, Mark, Number, Parameter, RigParameter, Watched
+from sonolube.tasks.parameters import Call, File, Mark, Number, Parameter, RigParameter, Watched, members_of
 from sonolube.tasks.progress import cell_progress, is_in_notebook, observed, watched, within
 from sonolube.tasks.table import split_examples
 from sonolube.text.units import temperature_difference_to_si, to_si
@@ -66,7 +67,9 @@ class TaskFunction(Generic[P, A]):
         self._function, self.__signature__ = function, _form(function)
         self._marks = marks_of(self)
         arguments = self.__signature__.parameters.items()
-        self._choices = {name: _choices(get_args(argument.annotation)[0]) for name, argument in arguments}
+        kinds = {name: get_args(argument.annotation)[0] for name, argument in arguments}
+        self._choices = {name: _choices(kind) for name, kind in kinds.items()}
+        self._numbers = {name: set(members_of(kind)) for name, kind in kinds.items() if _is_plain_number(kind)}
         if function.__doc__:
             self.__doc__ = _described(function.__doc__, self.__signature__.parameters, self._marks)
 
@@ -77,6 +80,7 @@ class TaskFunction(Generic[P, A]):
         bound.apply_defaults()
         call = Call(self._function.__name__, dict(bound.arguments), given, self._marks, _NAMES.get())
         _refuse_impossible(call, self._choices)
+        _refuse_other_than_numbers(call, self._numbers)
         try:
             with (
                 within(_CALL, call),
@@ -245,6 +249,22 @@ def _refuse_impossible(call: Call, choices: Mapping[str, tuple[Any, ...]]) -> No
                     raise UnknownName.among(choices[name], kind=shown(name), name=word)
         elif isinstance(mark, Parameter) and mark.unit is None and isinstance(value, int | float):
             _require_within(mark, name, value, value)
+
+
+def _is_plain_number(kind: Any) -> bool:
+    """Whether an argument of a type is a number without a unit, and nothing else."""
+    return bool(members_of(kind)) and set(members_of(kind)) <= {int, float}
+
+
+def _refuse_other_than_numbers(call: Call, numbers: Mapping[str, set[type]]) -> None:
+    """Refuse texts for plain numbers, and fractions for whole ones."""
+    for name, kinds in numbers.items():
+        value = call.arguments[name]
+        is_whole = float not in kinds
+        is_number = isinstance(value, Real) and not isinstance(value, bool)
+        if value is not None and not (is_number and (not is_whole or value == int(value))):
+            what = "a whole number" if is_whole else "a number"
+            raise InvalidInput(f"{shown(name)} must be {what}, got {value!r}", key=name)
 
 
 def _require_within(mark: Parameter, name: str, number: float, given: Number) -> None:

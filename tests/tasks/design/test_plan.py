@@ -1,10 +1,12 @@
 """Task `plan` in Python: the numbers of the command, quantities in SI, runs as bytes, and refusals."""
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 from pytest import approx, raises
 
 import sonolube as sl
@@ -62,3 +64,25 @@ def test_a_plan_for_a_soft_body_is_refused_in_one_line(rigs: Path) -> None:
     with raises(InvalidInput, match="rests on tests of hard bodies, and friction model soft_layer") as refused:
         plan(rigs / "pom_on_steel.toml", **FEW)
     assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("argument", "value", "line"),
+    [
+        ("points", "many", "points must be a whole number, got 'many'"),
+        ("points", 2.5, "points must be a whole number, got 2.5"),
+        ("power", "0.9", "power must be a number, got '0.9'"),
+        ("power", True, "power must be a number, got True"),
+    ],
+)
+def test_a_text_for_a_plain_number_and_a_fraction_for_a_whole_one_are_refused(
+    argument: str, value: Any, line: str, rigs: Path
+) -> None:
+    with raises(InvalidInput, match=f"^{re.escape(line)}$"):
+        plan(rigs / "tribometer.toml", **{argument: value})
+
+
+def test_whole_numbers_of_numpy_are_whole_numbers(rigs: Path) -> None:
+    plain = plan(rigs / "power_map.toml", **FEW).object()
+    numbers = {name: np.int64(value) for name, value in {"points": 2, "seed": 0}.items()}
+    assert plan(rigs / "power_map.toml", **(FEW | numbers)).object() == plain  # type: ignore[arg-type]
