@@ -30,11 +30,17 @@ def content(file: dict[str, Any]) -> bytes:
     return base64.b64decode(file["base64"])
 
 
+def plain(file: bytes) -> str:
+    """Text of a table without the line that says what made it."""
+    first, *lines = file.decode().splitlines(keepends=True)
+    return "".join(lines if first.startswith("# ") else [first, *lines])
+
+
 @pytest.mark.parametrize("ending", [".c", ".csv"])
 def test_a_file_is_that_of_the_task(ending: str) -> None:
     found = answer_files(CONTROL | {"ending": ending}, NOWHERE)
     assert found["name"] == f"tribometer-control{ending}"
-    assert content(found).decode() == by_the_task().files()[found["name"]]
+    assert plain(content(found)) == by_the_task().files()[found["name"]]
 
 
 def test_the_source_in_c_names_rig_changes_and_version() -> None:
@@ -59,8 +65,7 @@ def test_the_archive_of_a_plan_has_its_protocols_and_names_the_seed() -> None:
     arguments = {"rig": {"name": "tribometer"}, "points": 2, "seed": 3}
     archive = zipfile.ZipFile(io.BytesIO(content(answer_files({"task": "plan", "arguments": arguments}, NOWHERE))))
     protocols = [name for name in archive.namelist() if name.endswith(".toml")]
-    runs = archive.read("tribometer-plan-runs.csv").decode().splitlines()
-    assert len(protocols) == len(runs) - 1
+    assert len(protocols) == len(plain(archive.read("tribometer-plan-runs.csv")).splitlines()) - 1
     assert "--seed 3" in archive.read("about.txt").decode()
 
 

@@ -1,15 +1,16 @@
-"""The page Data: from recordings to a prediction with own runs, by mouse and by keyboard."""
+"""The page Data: a tribologist goes from recordings to a prediction with own runs, by mouse and by keyboard."""
 
 import json
 import re
 from pathlib import Path
+from typing import Literal
 
-import numpy as np
 import pytest
-from playwright.sync_api import Page, expect
-from tests.browser.pages import at_rest, show
+from playwright.sync_api import Browser, Page, expect
+from tests.browser.pages import at_rest, opened, show
+from tests.browser.recordings import write_recordings
 from tests.browser.test_pages import faults_of_access
-from tests.browser.walks import HANDS, Mouse
+from tests.browser.walks import HANDS, Keyboard, Mouse
 from tests.browser.workbench import Served
 from tests.chromium import CHROMIUM
 
@@ -19,28 +20,11 @@ pytestmark = [
     pytest.mark.browser,
     pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine; Debian's package is called chromium"),
 ]
-ZERO, INTRINSIC, REDUCTION = 0.05, 1.0, 0.3
 
 
 @pytest.fixture(scope="module")
 def files(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
-    """A recording with its voltage, and one without, whose columns are unknown."""
-    folder, rng, t = tmp_path_factory.mktemp("recordings"), np.random.default_rng(1), np.arange(0, 60, 0.01)
-    volts = 14.0 * np.floor(t / 20)
-    force = INTRINSIC * (1 - REDUCTION * volts / 28) + 0.03 * rng.standard_normal(t.size)
-    np.savetxt(
-        folder / "stairs.csv",
-        np.stack([t, volts, force], 1),
-        delimiter=",",
-        header="time (s),voltage_peak_to_peak (V),friction_force (N)",
-        comments="",
-        fmt="%.9g",
-    )
-    cell = ZERO + force * (t > 4)
-    np.savetxt(
-        folder / "cell.csv", np.stack([1e3 * t, cell], 1), delimiter=",", header="Zeit,Zelle", comments="", fmt="%.9g"
-    )
-    return folder / "stairs.csv", folder / "cell.csv"
+    return write_recordings(tmp_path_factory.mktemp("recordings"))
 
 
 @pytest.mark.parametrize("hand", HANDS)
@@ -96,7 +80,7 @@ def test_recordings_lead_to_a_prediction_with_own_runs(hand: type[Mouse], page: 
 def drag_end(walk: Mouse, test: str, pixels: float) -> None:
     """Drag the end of a part, or move it by the arrow keys."""
     handle = walk.page.get_by_test_id(test)
-    if walk.name == "keyboard":
+    if isinstance(walk, Keyboard):
         walk.press(test, "Shift+ArrowLeft")
         walk.page.keyboard.press("Tab")
         return
@@ -140,16 +124,17 @@ def test_a_recording_is_moved_and_zoomed_and_the_window_is_kept(
 
 
 def test_the_page_has_no_fault_of_access_and_does_not_scroll_sideways(
-    page: Page, workbench: Served, files: tuple[Path, Path]
+    browser: Browser, workbench: Served, files: tuple[Path, Path]
 ) -> None:
-    show(page, workbench, "tribometer", {}, where="data")
-    page.get_by_test_id("data-files").set_input_files(files)
-    expect(page.get_by_test_id("measured")).to_contain_text("Reduction")
-    at_rest(page)
-    for width in (1280, 390, 320):
-        page.set_viewport_size({"width": width, "height": 844})
-        widths = page.evaluate("[document.documentElement.scrollWidth, innerWidth]")
-        assert widths[0] <= widths[1]
-    for scheme in ("light", "dark"):
-        page.emulate_media(color_scheme=scheme)
-        assert faults_of_access(page) == []
+    with opened(browser, workbench, bypass_csp=True, reduced_motion="reduce") as page:
+        show(page, workbench, "tribometer", {}, where="data")
+        page.get_by_test_id("data-files").set_input_files(files)
+        expect(page.get_by_test_id("measured")).to_contain_text("Reduction")
+        at_rest(page)
+        for width in (1280, 390, 320):
+            page.set_viewport_size({"width": width, "height": 844})
+            page.wait_for_function("document.documentElement.scrollWidth <= innerWidth")  # figures follow the width
+        schemes: tuple[Literal["light", "dark"], ...] = ("light", "dark")
+        for scheme in schemes:
+            page.emulate_media(color_scheme=scheme)
+            assert faults_of_access(page) == []

@@ -7,8 +7,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.sync_api import Page, expect
-from tests.browser.pages import LOAD, RIGS, at_rest, show
+from playwright.sync_api import Browser, Page, expect
+from tests.browser.pages import LOAD, RIGS, at_rest, opened, show
+from tests.browser.test_answer_files import plain
+from tests.browser.test_pages import faults_of_access
 from tests.browser.walks import HANDS, Mouse
 from tests.browser.workbench import Served
 from tests.chromium import CHROMIUM
@@ -58,9 +60,8 @@ def test_a_controller_in_c_and_as_units(hand: type[Mouse], page: Page, tmp_path:
     content = terminal("control", str(RIGS / "tribometer.toml"), "--friction", "0.5N", "--delay", "2ms")
     shown = page.get_by_test_id("numbers").locator("dd").all_text_contents()
     assert shown == [each["text"] for each in content["summary"]]
-    source = downloaded(walk, "save:.c").decode()
-    assert source == (tmp_path / "tribometer-control.c").read_text(encoding="utf-8")
-    assert downloaded(walk, "save:.csv") == (tmp_path / "tribometer-control.csv").read_bytes()
+    assert plain(downloaded(walk, "save:.c")) == (tmp_path / "tribometer-control.c").read_text(encoding="utf-8")
+    assert plain(downloaded(walk, "save:.csv")) == (tmp_path / "tribometer-control.csv").read_text(encoding="utf-8")
     if hand is Mouse:
         walk.press("start-job")  # the other hand finds what was made
     page.get_by_test_id("job-files").wait_for()
@@ -131,13 +132,15 @@ def test_a_plan_is_reached_from_what_would_sharpen_a_prediction(
     at_rest(page)
     content = terminal("plan", str(RIGS / "tribometer.toml"), "--set", f"{LOAD}=4 N", "--points", "2")
     assert page.get_by_test_id("plan-runs").locator("tbody tr").count() == len(content["runs"])
-    assert downloaded(Mouse(page, "plan"), "save:-runs.csv") == (tmp_path / "tribometer-plan-runs.csv").read_bytes()
-    sheet = downloaded(Mouse(page, "plan"), "save:report").decode()
+    walk = Mouse(page, "plan")
+    runs = (tmp_path / "tribometer-plan-runs.csv").read_text(encoding="utf-8")
+    assert plain(downloaded(walk, "save:-runs.csv")) == runs
+    sheet = downloaded(walk, "save:report").decode()
     assert "To be reported, in the order of ASTM G99" in sheet
 
 
 REFUSED = (
-    ("control", "control.rate", "-1", "control-rate-refusal"),
+    ("control", "control.rate", "-1 Hz", "control-rate-refusal"),
     ("control", "control.friction", "5N", ""),
     ("plan", "plan.points", "many", "plan-points-refusal"),
     ("plan", "plan.speed", "3 kg", "plan-speed-refusal"),
@@ -172,3 +175,14 @@ def test_a_study_that_a_rig_has_not_is_said_in_one_line(
     if part == "designs":
         page.get_by_test_id("start-job").click()
     expect(page.get_by_test_id("refused")).to_contain_text(said)
+
+
+def test_no_part_has_a_fault_of_access_or_scrolls_sideways_on_a_phone(browser: Browser, workbench: Served) -> None:
+    phone: dict[str, Any] = {"viewport": {"width": 320, "height": 640}, "color_scheme": "dark", "bypass_csp": True}
+    with opened(browser, workbench, **phone, reduced_motion="reduce") as page:
+        for part in ("plan", "control"):
+            page.goto(f"{workbench.address}#/design?rig=tribometer&part={part}")
+            page.get_by_test_id(part).wait_for()
+            at_rest(page)
+            assert faults_of_access(page) == [], part
+            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), part

@@ -105,7 +105,7 @@ def test_a_protocol_is_edited_run_compared_and_fitted(hand: type[Mouse], page: P
     walk.picture("asked")
     walk.press("confirm")
     expect(page.get_by_test_id("run-step")).to_contain_text("step 6")
-    expect(page.get_by_test_id("now:friction_force")).to_contain_text("N")
+    expect(page.get_by_test_id("chart:live")).to_contain_text("Friction force 0.")
     walk.picture("running")
     expect(page.get_by_test_id("run-state")).to_have_text("✓ completed")
     expect(page.get_by_test_id("stop")).to_be_hidden()
@@ -116,6 +116,11 @@ def test_a_protocol_is_edited_run_compared_and_fitted(hand: type[Mouse], page: P
     walk.press("fit")
     expect(page.get_by_test_id("fitted")).to_contain_text("3 runs under 3 conditions")
     walk.picture("fitted")
+    walk.press("to-data")
+    expect(page.get_by_test_id("page:data")).to_have_attribute("aria-current", "page")
+    expect(page.locator("[data-test^='file:']")).to_contain_text("Recording")
+    page.go_back()
+    expect(page.get_by_test_id("fitted")).to_be_visible()
     walk.press("hold")  # for the next user
     expect(page.get_by_test_id("holder")).to_have_text("Nobody holds the laboratory.")
     walk.press("predict-runs")
@@ -133,7 +138,7 @@ def test_steps_are_chosen_inserted_moved_and_removed_by_keys_and_refusals_keep_w
     for _ in range(2):
         page.keyboard.press("ArrowRight")
     assert in_use(page) == "step:3"
-    entry, refusal = page.get_by_test_id("entry:steps.3.duration"), page.get_by_test_id("entry-refusal")
+    entry, refusal = page.get_by_test_id("entry:steps.3.duration"), page.locator("#entry-steps-3-duration-refusal")
     entry.fill("3 kg")
     page.keyboard.press("Enter")
     expect(refusal).to_contain_text("duration")

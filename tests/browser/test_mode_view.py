@@ -45,7 +45,7 @@ def shapes(horn: Any) -> dict[str, Any]:
 def test_the_tuned_mode_has_the_numbers_of_the_task(horn: Any, shapes: dict[str, Any]) -> None:
     answer = horn.object()
     mode = next(each for each in shapes["modes"] if each["name"] == answer["mode"])
-    assert mode["reference"] == "the working face"
+    assert mode["reference"] == "the displacement of the working face"
     assert mode["end_ratio"] == approx(answer["displacement_gain"]["value"], rel=1e-6)
     assert mode["nodal_planes"] == approx([1e3 * answer["node_position"]["value"]])
     assert mode["nodal_planes"] == approx([500 * answer["total_length"]["value"]], rel=1e-3)  # of a straight bar
@@ -66,7 +66,8 @@ def test_shapes_are_those_of_the_task(tmp_path: Path) -> None:
     points, triangles = numbers(shapes["points"]).reshape(-1, 3), numbers(shapes["triangles"], "<u4").reshape(-1, 3)
     volume = np.abs(np.linalg.det(points[triangles].astype(float))).sum() / 6  # divergence theorem, seen from within
     assert volume == approx(np.pi * RADIUS**2 * LENGTH, rel=5e-3)  # of flat triangles
-    assert write_files(mode_files(found), folder=tmp_path) == [SHAPES_FILE]
+    assert write_files(mode_files(found), folder=tmp_path, line="made by a test") == [SHAPES_FILE]
+    assert json.loads((tmp_path / SHAPES_FILE).read_text(encoding="utf-8"))["modes"] == shapes["modes"]
 
 
 def test_a_transducer_has_shapes_without_a_stress_that_its_electric_fields_would_change() -> None:
@@ -75,6 +76,16 @@ def test_a_transducer_has_shapes_without_a_stress_that_its_electric_fields_would
     names = [each["name"] for each in found.object()["spectra"]["free"]["modes"]]
     assert [each["name"] for each in modes] == names
     assert {each["stress"] for each in modes} == {None}
+
+
+def test_modes_of_another_program_have_no_solid_to_show(tmp_path: Path) -> None:
+    table = tmp_path / "modes.csv"
+    table.write_text(
+        "natural_frequency [Hz],damping_ratio,drive_participation [N/V],contact_participation\n20000,0.002,0.5,1.2\n"
+    )
+    found = sl.modes(from_file=table, clamped_capacitance="4.2 nF")
+    assert mode_files(found) == {}
+    assert found.files()
 
 
 def test_every_part_has_fields_that_make_it() -> None:

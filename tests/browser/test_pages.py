@@ -156,6 +156,7 @@ def faults_of_access(page: Page) -> list[str]:
     """What axe finds against the guidelines of access."""
     if page.evaluate("!('axe' in window)"):
         page.evaluate(files("axe_playwright_python").joinpath("axe.min.js").read_text(encoding="utf-8"))
+    # preloaded, styles that styles import would be sought beside the page
     found = page.evaluate("axe.run(document, {resultTypes: ['violations'], preload: false})")
     return [f"{each['id']}: {[node['target'] for node in each['nodes']][:3]}" for each in found["violations"]]
 

@@ -164,7 +164,13 @@ def test_a_view_refuses_what_is_no_number(wrong: dict[str, Any], long: dict[str,
 
 
 def test_statements_are_refused_by_their_columns(long: dict[str, str], places: Places) -> None:
-    for wrong in ({"columns": []}, {"columns": {"a": 1}}, {"columns": {}, "rows": 3}, {"columns": {"time (s)": "N"}}):
+    given_wrong: tuple[dict[str, Any], ...] = (
+        {"columns": []},
+        {"columns": {"a": 1}},
+        {"columns": {}, "rows": 3},
+        {"columns": {"time (s)": "N"}},
+    )
+    for wrong in given_wrong:
         with raises(InvalidInput) as refused:
             file_view({"file": long} | wrong, places)
         assert refused.value.key in ("columns", "rows", "time (s)")
@@ -205,6 +211,17 @@ def test_rows_are_appended_to_a_table_of_runs(staircase: dict[str, Any], places:
     assert (found["runs"], runs.sizes["run"]) == (6, 6)
     alone = measured_use({"table": own}, places)
     assert (alone["added"], alone["entries"]) == (4, [])
+
+
+def test_a_table_of_unknown_headings_becomes_runs_by_its_mapping(places: Places, tmp_path: Path) -> None:
+    own = given_file(places, "eigene.csv", b"v;F mit;F ohne\n20;0,5;1,0\n40;0,8;1,0\n")
+    columns = {"v": "sliding_speed mm/s", "F mit": "friction_force N", "F ohne": "intrinsic_friction_force N"}
+    mapping = file_view({"file": own, "columns": columns}, places)["mapping"]
+    found = measured_use({"table": own, "mapping": mapping}, places)
+    (tmp_path / "runs.csv").write_text(found["csv"])
+    runs = sl.read_runs(tmp_path / "runs.csv")
+    assert runs["friction_reduction"].values == approx([0.5, 0.2])
+    assert runs["sliding_speed"].values == approx([0.02, 0.04])
 
 
 def test_conditions_are_refused_by_name(staircase: dict[str, Any], places: Places) -> None:

@@ -4,9 +4,10 @@ import re
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Page, expect
-from tests.browser.pages import at_rest, show
+from playwright.sync_api import Browser, Page, expect
+from tests.browser.pages import at_rest, opened, show
 from tests.browser.scans import CIRCUIT, GROOVE_DEPTH, write_groove, write_spectrum, write_stack_spectrum
+from tests.browser.test_pages import faults_of_access
 from tests.browser.walks import HANDS, Keyboard, Mouse
 from tests.browser.workbench import Served
 from tests.chromium import CHROMIUM
@@ -139,3 +140,29 @@ def test_a_spectrum_gives_its_circuit_and_the_stack_of_a_rig(
     assert float(entries["free_capacitance"]) == pytest.approx(360, rel=0.02)  # nF
     assert float(entries["stack_stiffness"]) == pytest.approx(2, rel=0.02)  # GN/m
     assert set(entries) == {"free_capacitance", "free_stroke_per_volt", "stack_stiffness", "stack_damping"}
+
+
+def test_scan_and_spectrum_can_be_read_and_reached_in_either_theme_and_on_a_phone(
+    browser: Browser, workbench: Served, tmp_path: Path
+) -> None:
+    with opened(browser, workbench, bypass_csp=True, color_scheme="dark") as page:
+        show(page, workbench, "tribometer", {}, where="data")
+        walk = Mouse(page, "scan-shades")
+        walk.give("choose-files", write_groove(tmp_path))
+        walk.write("set:spacing", "5 um", rests=False)
+        page.get_by_test_id("measured").wait_for()
+        for seen, width, scheme in (("map", 1280, "dark"), ("relief", 320, "dark"), ("map", 390, "light")):
+            page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+            page.set_viewport_size({"width": width, "height": 800})
+            walk.choose("set:seen", seen)
+            at_rest(page)
+            assert faults_of_access(page) == [], (seen, width)
+            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), (seen, width)
+            walk.picture(f"{seen}-{width}")
+        walk.give("choose-files", write_spectrum(tmp_path))
+        page.get_by_test_id("set:residual").wait_for()
+        page.get_by_test_id("measured").wait_for()
+        at_rest(page)
+        assert faults_of_access(page) == []
+        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+        walk.picture("spectrum-390")

@@ -164,3 +164,9 @@ def test_parts_are_added_to_one_panel_of_a_copy() -> None:
 )
 def test_units_in_figures_have_a_micro_sign(text: str, shown: str) -> None:
     assert with_micro_sign(text) == shown
+
+
+def test_a_number_of_an_array_is_a_number_of_the_object() -> None:
+    panel = Panel(x=SPEED, y=SPEED, parts=(Rule(value=X[1], label="steady"), Rule(value=np.float64(np.float32(0.5)))))
+    parts = chart_object(Chart(panels=(panel,), size=(3.0, 2.0)))["panels"][0]["parts"]
+    assert [part["value"] for part in json.loads(json.dumps(parts))] == [2.0, 0.5]

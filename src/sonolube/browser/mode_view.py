@@ -4,7 +4,7 @@ import base64
 import inspect
 import json
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, Final, Protocol, cast
+from typing import TYPE_CHECKING, Any, Final, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,6 +72,7 @@ def _sizes(function: Callable[..., Any]) -> list[dict[str, Any]]:
     return found
 
 
+@runtime_checkable
 class _HasModes(Protocol):
     """Answer with modes on the surface of a part."""
 
@@ -85,7 +86,9 @@ def _size_text(value: float, unit: str) -> str:
 
 
 def mode_files(answer: "Answer") -> dict[str, str | bytes]:
-    """Files of a job beside those of its answer: mode shapes, and the drawing of a horn."""
+    """Files of a job beside those of its answer: mode shapes, and the drawing of a horn; none without a solid."""
+    if not isinstance(answer, _HasModes):
+        return {}
     from sonolube.figure import render_figure
 
     drawn = {
@@ -93,7 +96,7 @@ def mode_files(answer: "Answer") -> dict[str, str | bytes]:
         for name, drawing in answer.figures().items()
         if name.endswith("-drawing")
     }
-    return {SHAPES_FILE: json.dumps(shapes_object(cast(_HasModes, answer).surface_modes())), **drawn}
+    return {SHAPES_FILE: json.dumps(shapes_object(answer.surface_modes())), **drawn}
 
 
 def shapes_object(found: "SurfaceModes") -> dict[str, Any]:
@@ -105,17 +108,22 @@ def shapes_object(found: "SurfaceModes") -> dict[str, Any]:
         "modes": [
             {
                 "name": mode.name,
-                "frequency": mode.frequency,
+                "frequency": mode.frequency_text,
                 "reference": mode.reference,
-                "shape": _packed(mode.displacement, "<f4"),
+                "shape": _packed(mode.shape, "<f4"),
                 "stress": None if mode.stress is None else _packed(_MEGAPASCAL_PER_MICROMETRE * mode.stress, "<f4"),
-                "peak_stress": None if mode.peak_stress is None else _MEGAPASCAL_PER_MICROMETRE * mode.peak_stress,
+                "peak_stress": _scaled(mode.stress_per_displacement),
                 "end_ratio": None if mode.motion is None else mode.motion.end_ratio,
                 "nodal_planes": None if mode.motion is None else [1e3 * each for each in mode.motion.nodal_planes],
             }
             for mode in found.modes
         ],
     }
+
+
+def _scaled(stress: float | None) -> float | None:
+    """Stress per displacement in MPa/um."""
+    return None if stress is None else _MEGAPASCAL_PER_MICROMETRE * stress
 
 
 def _packed(values: NDArray[Any], kind: str) -> str:

@@ -41,6 +41,7 @@ def sized(dimensions: Iterable[SourcedDimension]) -> Callable[[Callable[..., Tra
             return body({name: given.get(name, value) for name, value in defaults.items()}, **others)
 
         made.__signature__ = whole  # type: ignore[attr-defined]
+        del made.__wrapped__  # whose source has other defaults than the signature
         return made
 
     return decorated

@@ -114,6 +114,15 @@ def test_questions_on_a_terminal_give_the_same_rig_as_options() -> None:
     assert Path("asked.toml").read_text() == Path("given.toml").read_text()
 
 
+def test_of_a_soft_body_the_thickness_is_asked_for() -> None:
+    answers = ["felt", "glass", "flat 20mm", "5N", "0.2m/s", "20kHz", "3um", "ground N6", "ground N6", "4mm"]
+    code, screen = conversation(["new", "asked.toml"], answers)
+    assert code == 0, screen
+    assert "Thickness of Unspecified felt or cloth as a layer on a rigid base, such as 3mm [3mm]: " in screen
+    assert "next: sonolube friction asked.toml" in screen
+    assert read_rig("asked.toml").friction_model.layer_thickness == approx(4e-3)  # type: ignore[attr-defined]
+
+
 def test_an_empty_answer_takes_the_default_that_the_question_shows() -> None:
     code, screen = conversation(["new", "rig.toml", *KNOWN[4:]], ["", "", ""])
     assert code == 0, screen

@@ -21,9 +21,11 @@ SLICE_DURATION: Final = 0.04
 """Longest time of one slice. [s]"""
 
 _KEPT: Final = 2400  # slices, the last minute
+_AT_ONCE: Final = 300  # slices of one frame, which keeps the thread of the run waiting while it is written
 _WAITING: Final = 64  # blocks that were not yet reduced
 _MAX_SLICES: Final = 64  # of one block
 _POLL: Final = 0.02  # s
+_LAST: Final = 50  # looks at the blocks that wait at the end
 _ASKED: Final = 0.1  # s, between two looks at requests to end while an operator is asked
 _TRIPS: Final = 20
 
@@ -118,7 +120,11 @@ class LiveRun:
         return ""
 
     def end(self, state: str, outcome: str, reason: str) -> None:
-        """Take the end of the run."""
+        """Take the end of the run, its last blocks reduced."""
+        wait = Signal()
+        for _ in range(_LAST):
+            if self._waiting:
+                wait.wait(_POLL)
         self._state, self._outcome, self._reason = state, outcome, reason
         self._prompt = None
         self.has_ended.set()
@@ -138,16 +144,18 @@ class LiveRun:
             "prompt": None if prompt is None else {"task": prompt.task, "text": prompt.text},
             "trips": list(self._trips),
             "is_paused": self._state == "paused" or self._control.is_paused,
+            "is_stopping": bool(self._control.stop_reason) or self._state == "stopping",
             "is_ended": self.has_ended.is_set(),
             "is_lost": False,
         }
 
     def frame(self, after: int) -> tuple[dict[str, Any], int]:
-        """State with the slices behind a number, and the number of the last one."""
+        """State with the next slices behind a number, and the number of the last of them."""
         with self._held:
             first = self._slices[0][0] if self._slices else self._next
-            new = list(islice(self._slices, max(after + 1 - first, 0), None))
-            last = self._next - 1
+            begin = max(after + 1 - first, 0)
+            new = list(islice(self._slices, begin, begin + _AT_ONCE))
+            last = new[-1][0] if new else self._next - 1
         channels: dict[str, list[list[float]]] = {}
         for _, time, values in new:
             for name, (low, high, mean) in values.items():

@@ -99,11 +99,7 @@ class Laboratory:
 
     async def _shown(self, request: Request, holder: str) -> Response:
         """State of the laboratory for a tab."""
-        if self._devices is None:
-            status, found = await self._pool.answer("lab_devices", {}, self._places)
-            if status != 200:
-                return json_response(found, status=status)
-            self._devices = found
+        devices = await self._known_devices()
         record, lost = self._latest(), self._lost()
         state = {
             "runs_folder": Path(self._places.runs).name,
@@ -114,11 +110,27 @@ class Laboratory:
             if lost is None
             else {"id": lost.id, "text": _LOST.format(title=str(lost.about.get("title", lost.id)))},
         }
-        return json_response(self._devices | state)
+        return json_response(devices | state)
+
+    async def _known_devices(self) -> dict[str, Any]:
+        """Devices and protocols, which a worker has read once.
+
+        Raises
+        ------
+        InvalidInput
+            If the map of devices cannot be read any more.
+        """
+        if self._devices is None:
+            status, found = await self._pool.answer("lab_devices", {}, self._places)
+            if status != 200:
+                raise InvalidInput(str(found.get("text", "")))
+            self._devices = found
+        return self._devices
 
     async def _take(self, request: Request) -> Response:
         """State, after the hold was taken."""
         holder = _holder(await content_of(request))
+        await self._known_devices()  # which may take a worker longer than a hold lasts
         self._hold.take(holder)
         return await self._shown(request, holder)
 
@@ -139,6 +151,8 @@ class Laboratory:
             if status != 200:
                 return json_response(plan, status=status)
             record = await self._spawned(plan)
+        with suppress(InvalidInput):
+            self._hold.take(_holder(content))  # of which nothing was heard while this took
         link = record.link()
         sys.stdout.write(f"A run has started. It can be stopped at {link}\n")
         sys.stdout.flush()
@@ -163,6 +177,8 @@ class Laboratory:
         waited = 0.0
         while (record := read_record(self._folder, record.id)).process is None:
             if process.poll() is not None or waited > _STARTING:
+                ended = {"state": "safe", "outcome": "refused", "reason": "its process did not start", "is_ended": True}
+                write_private(record.folder / END, _bare(record) | ended)
                 raise InvalidInput(f"the process of the run did not start; {record.folder / 'log.txt'} says why")
             await asyncio.sleep(_POLL)
             waited += _POLL
@@ -179,11 +195,12 @@ class Laboratory:
 
     async def _stop(self, request: Request) -> Response:
         """State of the run after it was asked to stop, by anybody."""
-        await content_of(request)
         record = self._require_at_work()
         try:
             await asked(record, "POST", "/stop")
         except NoAnswer:
+            if ON_WINDOWS:  # where a signal would end the process at once, and its outputs stay on
+                raise
             if record.process is not None and record.is_alive:
                 os.kill(record.process, signal.SIGTERM)  # which ends the run in order, too
         return json_response(await self._told(read_record(self._folder, record.id), request))
@@ -258,20 +275,22 @@ class Laboratory:
         silent = {"reason": f"its process, {record.process}, does not answer; stop it here, or by its own page"}
         return _bare(record) | silent | fixed | {"stop_link": record.link()}
 
+    def _records(self) -> list[RunnerRecord]:
+        """Records of runners that have listened or ended, the latest first."""
+        found = (read_record(self._folder, name) for name in record_names(self._folder))
+        return [each for each in found if each.process is not None or each.end is not None]
+
     def _latest(self) -> RunnerRecord | None:
         """Record of the run at work, else of the latest one."""
-        names = record_names(self._folder)
-        return self._at_work() or (read_record(self._folder, names[0]) if names else None)
+        return self._at_work() or next(iter(self._records()), None)
 
     def _at_work(self) -> RunnerRecord | None:
         """Record of the run at work; None where there is none."""
-        found = (read_record(self._folder, name) for name in record_names(self._folder))
-        return next((each for each in found if each.end is None and each.is_alive), None)
+        return next((each for each in self._records() if each.end is None and each.is_alive), None)
 
     def _lost(self) -> RunnerRecord | None:
         """Record of a run that was killed and not yet recovered."""
-        found = (read_record(self._folder, name) for name in record_names(self._folder))
-        return next((each for each in found if each.is_lost), None)
+        return next((each for each in self._records() if each.is_lost), None)
 
     def _require_at_work(self) -> RunnerRecord:
         """Record of the run at work."""
@@ -307,6 +326,7 @@ def _bare(record: RunnerRecord) -> dict[str, Any]:
         "prompt": None,
         "trips": [],
         "is_paused": False,
+        "is_stopping": False,
         "is_ended": False,
         "is_lost": False,
     }

@@ -68,8 +68,10 @@ def main(folder: Path) -> None:
         traceback.print_exc(file=sys.stderr)
         ended = _broken(live, f"a fault of sonolube: {type(failure).__name__}: {failure}")
     live.end(*ended)
-    write_private(folder / END, live.status())
-    server.close()
+    try:
+        write_private(folder / END, live.status())
+    finally:
+        server.close()
 
 
 def _broken(live: LiveRun, reason: str) -> tuple[str, str, str]:

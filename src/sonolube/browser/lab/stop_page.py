@@ -16,7 +16,7 @@ from typing import Any, Final
 import uvicorn
 from starlette.applications import Starlette
 from starlette.requests import Request
-from starlette.responses import RedirectResponse, Response, StreamingResponse
+from starlette.responses import Response, StreamingResponse
 from starlette.routing import Route
 
 from sonolube.browser.access import Access, Guard
@@ -33,6 +33,7 @@ _SILENCE: Final = 1.0  # s, after which a frame is sent without news
 _STOPPING: Final = 3.0  # s, for which a request to stop waits
 _POLL: Final = 0.02  # s
 _LAST: Final = 5.0  # s, for what is still being sent at the end
+_MOST: Final = 16  # readers of frames at one time
 _STATIC: Final = frozenset({"stop.css", "link.css", "link.js", "icon.svg"})
 
 
@@ -46,7 +47,7 @@ class StopServer:
     """
 
     def __init__(self, live: LiveRun, control: RunControl) -> None:
-        self._live, self._requests = live, control
+        self._live, self._requests, self._readers = live, control, 0
         self._listening = socket.socket(socket.AF_INET, socket.SOCK_STREAM, socket.IPPROTO_TCP)
         self._listening.bind(("127.0.0.1", 0))
         self._listening.listen()
@@ -96,6 +97,10 @@ class StopServer:
     async def _page(self, request: Request) -> Response:
         """Page with the state of the run and the button."""
         del request
+        return self._shown()
+
+    def _shown(self) -> Response:
+        """Page with the present state; no redirect to it, for the server may end with the run."""
         return Response(stop_page(self._live.status()), media_type="text/html", headers={"cache-control": "no-store"})
 
     async def _stop(self, request: Request) -> Response:
@@ -107,9 +112,7 @@ class StopServer:
             waited += _POLL
         if "json" in request.headers.get("accept", ""):
             return _json(self._live.status())
-        if self._live.has_ended.is_set():  # its process ends, so that there is nothing to go to
-            return await self._page(request)
-        return RedirectResponse("./", status_code=303)
+        return self._shown()
 
     async def _status(self, request: Request) -> Response:
         """State of the run."""
@@ -138,11 +141,22 @@ class StopServer:
     async def _stream(self, request: Request) -> Response:
         """Frames, a line of JSON each."""
         del request
+        if self._readers >= _MOST:
+            raise InvalidInput(f"{_MOST} pages watch the run already; close one")
         headers = {"cache-control": "no-store", "content-encoding": "identity"}
         return StreamingResponse(self._frames(), media_type="application/x-ndjson", headers=headers)
 
     async def _frames(self) -> AsyncIterator[bytes]:
         """Frames with news, at most 25 a second; a reader that is slow gets fewer, and the run waits for none."""
+        self._readers += 1
+        try:
+            async for frame in self._news():
+                yield encoded(frame) + b"\n"
+        finally:
+            self._readers -= 1
+
+    async def _news(self) -> AsyncIterator[dict[str, Any]]:
+        """Frames with news, and one a second without; the last is that of the end."""
         last, shown, silent = -1, "", 0.0
         while True:
             is_last = self._live.has_ended.is_set()
@@ -150,8 +164,8 @@ class StopServer:
             news = f"{frame['state']} {frame['prompt']} {frame['is_paused']} {len(frame['trips'])} {frame['step']}"
             if newest > last or news != shown or silent >= _SILENCE or is_last:
                 last, shown, silent = max(newest, last), news, 0.0
-                yield encoded(frame) + b"\n"
-            if is_last:
+                yield frame
+            if is_last and newest <= last and not frame["channels"]:
                 return
             await asyncio.sleep(_FRAME)
             silent += _FRAME
@@ -176,7 +190,7 @@ def stop_page(status: dict[str, Any]) -> str:
     if is_ended:
         head = "The run has ended: motor and drive are off" if is_safe else "Cut the power: motor or drive may be on"
     else:
-        head = "A run is at work"
+        head = "Stopping: motor and drive are being switched off" if status["is_stopping"] else "A run is at work"
     facts = {
         "run": status.get("title") or status.get("protocol") or "",
         "state": f"{status['outcome'] or status['state']}{': ' if status['reason'] else ''}{status['reason']}",
@@ -190,7 +204,7 @@ def stop_page(status: dict[str, Any]) -> str:
     replaced = {
         "HEAD": escape(head),
         "CLASS": "" if is_safe else ' class="danger"',
-        "BUTTON": "" if is_ended else f"{button}<p>{note}</p>",
+        "BUTTON": "" if is_ended else f'{button}<p>{note}</p><p><a href="./">Look again</a></p>',
         "FACTS": rows,
         "SAFETY": escape(SAFETY),
     }

@@ -60,7 +60,7 @@ def front_chart(optimum: Optimum) -> Chart:
         parts.append(Points(x=x, y=y, label=name, colour=place, marker=place, size=1.5, sources=sources))
     parts.append(Note(x=points[0, 0], y=points[0, 1], text=_drive(optimum.front[0]), side="above"))
     if len(points) > 1:
-        parts.append(Note(x=points[-1, 0], y=points[-1, 1], text=_drive(optimum.front[-1]), side="left"))
+        parts.append(Note(x=points[-1, 0], y=points[-1, 1], text=_drive(optimum.front[-1]), side="above"))
     across, up = (_front_axis(name, values) for name, values in zip(names, points.T, strict=True))
     return one_panel(across, up, parts, size=(5.8, 3.8), legend="top")
 

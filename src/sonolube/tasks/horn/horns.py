@@ -266,7 +266,7 @@ class HornAnswer(Answer):
             mode.modes.shapes[list(rows)],
             frequencies=frequencies,
             axis=axis,
-            references={mode.names[mode.row]: ("the working face", tip)},
+            references={mode.names[mode.row]: ("the displacement of the working face", tip)},
         )
 
     def dataset(self) -> Dataset:

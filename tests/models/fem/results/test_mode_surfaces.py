@@ -64,7 +64,7 @@ def test_the_surface_encloses_the_body() -> None:
 
 def test_displacement_and_stress_are_stated_over_the_largest_displacement() -> None:
     axial = modes().modes[0]
-    assert np.linalg.norm(axial.displacement, axis=1).max() == approx(1.0)
+    assert np.linalg.norm(axial.shape, axis=1).max() == approx(1.0)
     assert axial.stress is not None
     # E k of a bar that moves along itself alone, whose stress has the lateral constraint of its strain: (1 - 2v) of it
     slope, share = np.pi / LENGTH, 200e9 / (1 + 0.3)

@@ -4,7 +4,7 @@ import uPlot from '../vendor/uplot-1.6.32.js';
 import {drawParts, mapping, nearPoint, pointsOf, pointText, valuesAt} from './chart-draw.js';
 import {along, fieldOf, flat, tickTexts, ticksOf, withUnit} from './chart-scale.js';
 
-const FONT = '11.5px system-ui, sans-serif';
+const FONT = '12px system-ui, sans-serif'; // uPlot scales whole pixels only
 const [NUMBER_HEIGHT, NUMBER_WIDTH] = [34, 50]; // px that a number takes along an axis
 const STEPS = 50; // of the arrow keys over an axis
 const RULE_STEPS = 400; // of the rule that is dragged

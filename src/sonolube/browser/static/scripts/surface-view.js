@@ -26,7 +26,6 @@ const FRAGMENT = `#version 300 es
     colour = vec4(isEdge ? ink : mix(body, ink, rim), 1.0);
   }`;
 const SHADES = 256;
-const STYLES = 'static/pages/surface-view.css';
 const AXES = ['x', 'y', 'z'];
 const SHARP = Math.cos(Math.PI / 6); // of the angle between triangles, above which their edge is drawn
 const FIRST = {turn: (32 * Math.PI) / 180, tilt: (24 * Math.PI) / 180, size: 1};
@@ -35,7 +34,7 @@ const [STEP, ZOOM, NEAREST, FARTHEST] = [Math.PI / 24, 1.2, 20, 0.3];
 const PER_PIXEL = 0.009; // radians
 const FILL = 0.94; // of the canvas by a body whichever way it is turned
 
-document.head.append(Object.assign(document.createElement('link'), {rel: 'stylesheet', href: STYLES})); // once, with this module
+document.head.append(Object.assign(document.createElement('link'), {rel: 'stylesheet', href: 'static/pages/surface-view.css'})); // once, with this module
 
 /** Steps of the view by keys, each with its sign on a button and its name. */
 const STEPS = {

@@ -24,27 +24,27 @@ class SurfaceMode:
     ----------
     name : str
         Family and number, such as "axial 1".
-    frequency : str
+    frequency_text : str
         Natural frequency with its error, in words.
     reference : str
         Displacement that shape and stress are stated over, in words.
-    displacement : ndarray, shape (n, 3)
-        Displacements of the points over the reference. []
+    shape : ndarray, shape (n, 3)
+        Displacements of the points over the reference.
     stress : ndarray, shape (n,), or None
-        Equivalent stress of von Mises over the reference; None for a body with ceramics, whose electric fields have
-        stress too. [Pa/m]
-    peak_stress : float or None
+        Equivalent stress of von Mises over the reference in Pa/m; None for a body with ceramics, whose electric fields
+        have stress too.
+    stress_per_displacement : float or None
         Greatest equivalent stress of the whole body over the reference; None where there is no stress. [Pa/m]
     motion : SectionMotion or None
         Of the cross-sections; None for a family that does not move these as a whole.
     """
 
     name: str
-    frequency: str
+    frequency_text: str
     reference: str
-    displacement: Floats
+    shape: Floats
     stress: Floats | None
-    peak_stress: float | None
+    stress_per_displacement: float | None
     motion: SectionMotion | None
 
 
@@ -87,17 +87,17 @@ def surface_modes(
     largest = np.linalg.norm(surface.displacement, axis=-1).max(axis=-1)
     has_stress = all(medium.stress_constants is None for medium in model.media.values())
     modes = []
-    for row, (name, frequency) in enumerate(frequencies):
+    for row, (name, text) in enumerate(frequencies):
         reference, over = references.get(name, (_LARGEST, float(largest[row])))
         stress = nodal_stress_components(model, shapes[row]) / abs(over) if has_stress else None
         modes.append(
             SurfaceMode(
                 name=name,
-                frequency=frequency,
+                frequency_text=text,
                 reference=reference,
-                displacement=surface.displacement[row] / over,
+                shape=surface.displacement[row] / over,
                 stress=None if stress is None else _surface_stress(mesh, stress),
-                peak_stress=None if stress is None else float(von_mises_stress(stress).max()),
+                stress_per_displacement=None if stress is None else float(von_mises_stress(stress).max()),
                 motion=mode_section_motion(mesh, shapes[row], axis=axis, family=name.split()[0]),
             )
         )

@@ -31,11 +31,11 @@ def section_means(mesh: Mesh, field: Floats, *, axis: str) -> tuple[Floats, Floa
     return moments[0] / slice_volume[filled], moments[1] / slice_volume[filled]
 
 
-def sign_changes(position: Floats, values: Floats) -> Floats:
-    """Positions at which values change their sign, by linear interpolation."""
+def sign_changes(places: Floats, values: Floats) -> Floats:
+    """Places at which values change their sign, by linear interpolation."""
     at = np.flatnonzero(np.diff(np.sign(values)))
-    slope = (values[at + 1] - values[at]) / (position[at + 1] - position[at])
-    return np.asarray(position[at] - values[at] / slope)
+    slope = (values[at + 1] - values[at]) / (places[at + 1] - places[at])
+    return np.asarray(places[at] - values[at] / slope)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -48,7 +48,7 @@ class SectionMotion:
         Mean displacement of the end at the highest coordinate over that of the other; of the turn, where a body twists;
         None where that end rests.
     nodal_planes : tuple of float
-        Distances from the end at the lowest coordinate at which it changes its sign. [m]
+        Distances in m from the end at the lowest coordinate at which it changes its sign.
     """
 
     end_ratio: float | None

@@ -4,7 +4,7 @@ import {Blocks, Caveats, Failure, TextTable} from '../answer.js';
 import {Chart} from '../chart.js';
 import {Labelled, refusedBy, TextField} from '../fields.js';
 import {Waiting} from '../job.js';
-import {Button, Card, Select} from '../parts.js';
+import {Button, Card, classes, Select} from '../parts.js';
 import {addressOf, change, settle, useApp} from '../state.js';
 import {offer} from '../take-away.js';
 import {useMeasured} from './files.js';
@@ -45,9 +45,9 @@ function UseInRig({entries, note}) {
 /**
  * Answer of the task that measures a file: figures, numbers, caveats, what the rig takes; made anew for another task.
  * @param {{file: import('./files.js').DataFile, asked: import('./files.js').Asked, fields: string[][], own: object, set: Function,
- *   leave?: string[], rigNote: string, children?: any}} props `leave` names figures that are shown elsewhere; `children` stand beside the fields
+ *   leave?: string[], rigNote: string, isFigureFirst?: boolean, children?: any}} props `leave` names figures that are shown elsewhere; `children` stand beside the fields
  */
-export function Measured({file, asked, fields, own, set, leave = [], rigNote, children}) {
+export function Measured({file, asked, fields, own, set, leave = [], rigNote, isFigureFirst, children}) {
   const {content, failure, isWaiting} = useMeasured(file, asked);
   useEffect(() => (asked ? offer(asked.task, asked.args) : undefined), [JSON.stringify(asked)]);
   const isOld = isWaiting || Boolean(failure);
@@ -56,10 +56,10 @@ export function Measured({file, asked, fields, own, set, leave = [], rigNote, ch
   return html`<${Settings} fields=${fields} own=${own} set=${set} faults=${failure?.faults} />${children}
     <div class="row study-status"><${Waiting} isWaiting=${isWaiting} /></div>
     <${Failure} failure=${failure} shown=${fields.map(([name]) => name)} />
-    ${content && html`<div aria-busy=${isWaiting} data-test="measured">
+    ${content && html`<div aria-busy=${isWaiting} class=${classes('measured', {'is-figure-first': isFigureFirst})} data-test="measured">
       <div class="columns"><div class="stack"><${Card} id="measured-numbers" title="Result" isDim=${isOld}><${Blocks} blocks=${content.blocks} /><//></div>
         <div class="stack">${entries && html`<${UseInRig} entries=${entries} note=${rigNote} />`}
           <${Card} id="measured-caveats" title="Caveats" isTitleHidden=${true}><${Caveats} answer=${content} isMoving=${isWaiting}
             of=${JSON.stringify(asked)} hasFields=${false} /><//></div></div>
-      ${charts.map((one) => html`<${Chart} key=${one.name} ...${one} dimmed=${isOld} />`)}</div>`}`;
+      <div class="measured-figures">${charts.map((one) => html`<${Chart} key=${one.name} ...${one} dimmed=${isOld} />`)}</div></div>`}`;
 }

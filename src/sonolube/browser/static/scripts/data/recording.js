@@ -1,12 +1,12 @@
 /** A recording: its channels over time with the parts that are measured, what a task finds in them, and where that goes. */
 import {html} from '../../vendor/htm-preact-3.1.1.js';
 import {short} from '../chart-scale.js';
-import {Labelled, TextField} from '../fields.js';
-import {Button, Card, Select} from '../parts.js';
+import {split, TextField} from '../fields.js';
+import {Button, Card} from '../parts.js';
 import {settle} from '../state.js';
 import {Columns} from './columns.js';
 import {mappingOf, useMeasured} from './files.js';
-import {Measured, stated} from './measured.js';
+import {Choice, Measured, stated} from './measured.js';
 import {Trace} from './trace.js';
 import {Use} from './use.js';
 
@@ -20,7 +20,7 @@ const TASKS = {
   vibration: ['Vibration', /./, [['frequency', 'Frequency of the drive', NEEDED]]],
 };
 const CONDITIONS = [['sliding_speed', 'Sliding speed'], ['normal_load', 'Load'], ['voltage_peak_to_peak', 'Voltage, peak to peak'], ['vibration_amplitude', 'Amplitude']]
-  .map((field) => [...field, 'as recorded, or unknown']);
+  .map((field) => [...field, 'as recorded']);
 const PARTS = [['step', 'Add a step'], ['rest', 'Add a rest'], ['part', 'Measure a part']];
 const MAX_SHOWN = 3; // channels
 
@@ -53,15 +53,17 @@ const named = (marks) => marks.map((mark, at) => ({...mark, at, label: mark.volt
 /** Parts of a friction recording: a list with voltages, and what adds one within the window that is shown. */
 function Parts({marks, isFound, enter, range: [from, to]}) {
   const add = (kind) => {
-    const mark = {kind, from: from + (to - from) / 3, to: to - (to - from) / 3, ...(kind === 'step' && {voltage: '0 V'})};
+    const last = Math.max(from, ...(kind === 'part' || isFound ? [] : marks.map((mark) => mark.to))); // behind those that are there
+    const begin = last < to ? last : from;
+    const mark = {kind, from: begin, to: Math.min(begin + (to - from) / 5, to), ...(kind === 'step' && {voltage: '0 V'})};
     enter([...(isFound && kind !== 'step' ? marks.filter((each) => each.kind !== 'step') : marks), mark]);
   };
   const write = (at, voltage) => enter(marks.map((mark, place) => (place === at ? {...mark, voltage} : mark)));
   return html`<div class="data-parts" role="group" aria-label="Parts">
     ${isFound && html`<p class="hint">Steps as found in the voltage; drag an end to state them.</p>`}
-    <ul>${named(marks).map((mark) => html`<li key=${mark.id} class="row"><span class=${`tag is-${mark.kind}`}>${mark.kind}</span> ${short(mark.from, 5)} to ${short(mark.to, 5)} s
-      ${mark.kind === 'step' && (isFound ? mark.voltage : html`<${TextField} id=${`voltage-${mark.id}`} text=${mark.voltage} unit="V" aria-label=${`Voltage of ${mark.id}`}
-        data-test=${`voltage:${mark.id}`} onText=${(text, isMoving) => !isMoving && write(mark.at, text)} onSettle=${settle} />`)}
+    <ul>${named(marks).map((mark) => html`<li key=${mark.id} class="row"><span class=${`tag is-${mark.kind}`}>${mark.kind}</span> ${short(mark.from, 5)} to ${short(mark.to, 5)} s${isFound && mark.voltage && `: ${mark.voltage}`}
+      ${mark.kind === 'step' && !isFound && html`<${TextField} id=${`voltage-${mark.id}`} text=${mark.voltage} unit="V" aria-label=${`Voltage of ${mark.id}`}
+        data-test=${`voltage:${mark.id}`} onText=${(text, isMoving) => !isMoving && write(mark.at, text)} onSettle=${settle} />`}
       ${!(isFound && mark.kind === 'step') && html`<${Button} kind="small" onClick=${() => enter(marks.filter((_, at) => at !== mark.at))} aria-label=${`Remove ${mark.id}`}>remove<//>`}</li>`)}</ul>
     <p class="row">${PARTS.map(([kind, title]) => html`<${Button} key=${kind} onClick=${() => add(kind)} data-test=${`add:${kind}`}
       disabled=${kind === 'part' && marks.some((mark) => mark.kind === kind)}>${title}<//>`)}</p></div>`;
@@ -75,9 +77,11 @@ export default function Recording({file, own, set, info, asked}) {
   const hasParts = name === 'friction' && info.axis.name === 'time';
   const isFound = hasParts && !(own.marks ?? []).some(({kind}) => kind === 'step') && foundSteps(content).length > 0;
   const marks = [...(own.marks ?? []), ...(isFound ? foundSteps(content) : [])];
+  const window = {kind: 'window', id: 'window', label: 'window', isFixed: true, from: info.begin, to: info.begin + (split(own.window ?? '2 s')?.number ?? 2)};
   const enter = (some, options) => set({marks: some.length ? some : null}, options);
   const onMark = (mark, end, value, isMoving) => {
     if (!isMoving) return settle();
+    if (mark.isFixed) return set({window: `${Number(Math.max(value - info.begin, 0.01).toPrecision(3))} s`}, {replace: true});
     const others = marks.filter(({kind}, at) => at !== mark.at && kind === mark.kind);
     const least = end === 'to' ? mark.from : Math.max(info.begin, ...others.filter(({to}) => to <= mark.to).map(({to}) => to));
     const most = end === 'from' ? mark.to : Math.min(info.end, ...others.filter(({from}) => from >= mark.from).map(({from}) => from));
@@ -88,12 +92,11 @@ export default function Recording({file, own, set, info, asked}) {
   const show = (at) => set({shown: shown.includes(at) ? shown.filter((each) => each !== at) : [...shown, at]});
   const conditions = stated(Object.fromEntries(CONDITIONS.map(([key]) => [key, own[key]])));
   return html`<${Card} id="trace-title" title=${file.name}>
-      <${Trace} file=${file} mapping=${own.mapping} info=${info} shown=${shown} marks=${hasParts ? named(marks) : []} range=${own.range ?? null}
-        onRange=${(range) => set({range}, {replace: true})} onMark=${onMark} />
+      <${Trace} file=${file} mapping=${own.mapping} info=${info} shown=${shown} marks=${hasParts ? [window, ...named(marks)] : []} range=${own.range ?? null}
+        onRange=${(range) => set({range})} onMark=${onMark} />
       ${info.channels.length > 1 && html`<fieldset class="row"><legend class="hidden">Channels</legend>${info.channels.map((each, at) => html`<label key=${each.name} class="check">
         <input type="checkbox" checked=${shown.includes(at)} onChange=${() => show(at)} data-test=${`channel:${each.name}`} /> ${each.label}</label>`)}</fieldset>`}
-      <${Labelled} id="set-task" label="What is measured"><${Select} id="set-task" choices=${Object.entries(TASKS).map(([key, [title]]) => [key, title])} value=${name}
-        onChange=${(event) => set({task: event.target.value})} data-test="set:task" /><//>
+      <${Choice} name="task" label="What is measured" choices=${Object.entries(TASKS).map(([key, [title]]) => [key, title])} value=${name} onValue=${(task) => set({task})} />
       <${Measured} file=${file} asked=${asked} fields=${[...TASKS[name][2], ...CONDITIONS]} own=${own} set=${set}>
         ${hasParts && html`<${Parts} marks=${marks} isFound=${isFound} enter=${enter} range=${own.range ?? [info.begin, info.end]} />`}<//>
       <${Use} source=${content && !failure ? {results: content.answer.results, conditions} : null} /><//>

@@ -4,6 +4,7 @@ import {Failure, TextTable} from '../answer.js';
 import {useReply} from '../api.js';
 import {Chart} from '../chart.js';
 import {along} from '../chart-scale.js';
+import {Waiting} from '../job.js';
 import {Button, Card, classes, Loading} from '../parts.js';
 import {settle} from '../state.js';
 import {save} from '../take-away.js';
@@ -138,7 +139,7 @@ export default function Scan({file, own, set}) {
           <span>Fit the form past grooves</span></label></div>
       ${lacking.length > 0 && html`<${Settings} fields=${lacking} own=${own} set=${set} faults=${failure?.faults} />`}
       <${Failure} failure=${failure} shown=${LACKING.map(([name]) => name)} />
-      ${!content && !failure && html`<${Loading}>Reading ${file.name}…<//>`}
+      ${!content && !failure && html`<${Loading}>Reading ${file.name}… <${Waiting} isWaiting=${isWaiting} /><//>`}
       ${content && html`<div aria-busy=${isWaiting} data-test="scan">
         ${!section ? html`<${Chart} name="profile" chart=${content.chart} caption="Heights along the profile." />`
     : seen === 'relief' ? html`<${Relief} content=${content} own=${own} set=${set} label=${`${file.name} in 3D`} />`

@@ -41,5 +41,6 @@ function Sought({own, set}) {
 
 export default function Spectrum({file, own, set}) {
   return html`<${Card} id="spectrum-title" title=${file.name}>
-    <${Measured} file=${file} asked=${taskOf(file, own)} fields=${own.stack ? [SWEEP] : [SWEEP, LEADS]} own=${own} set=${set} rigNote=${RIG_NOTE}><${Sought} own=${own} set=${set} /><//><//>`;
+    <${Measured} file=${file} asked=${taskOf(file, own)} fields=${own.stack ? [SWEEP] : [SWEEP, LEADS]} own=${own} set=${set} rigNote=${RIG_NOTE}
+      isFigureFirst=${true}><${Sought} own=${own} set=${set} /><//><//>`;
 }

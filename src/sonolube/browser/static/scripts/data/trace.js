@@ -2,7 +2,7 @@
  * Channels of a recording over time, moved and zoomed by pointer, wheel and keys above a bar that shows where; its parts as handles.
  * What is drawn while it moves is there already; a finer view is asked for meanwhile.
  *
- * @typedef {{id: string, kind: string, label: string, from: number, to: number}} Mark
+ * @typedef {{id: string, kind: string, label: string, from: number, to: number, isFixed?: boolean}} Mark `isFixed` where only its end is moved
  */
 import {html, useEffect, useLayoutEffect, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {ask} from '../api.js';
@@ -140,7 +140,7 @@ function Handle({mark, end, x, range, unit, onMove}) {
     onMove(mark, end, value + step * (event.shiftKey ? 0.05 : 0.005) * (range[1] - range[0]), true);
   };
   if (value < range[0] || value > range[1]) return null;
-  return html`<div role="slider" tabindex="0" class=${`trace-handle is-${end}`} style=${{left: `${x.to(value)}px`}} aria-valuenow=${value} aria-valuetext=${`${short(value, 6)} ${unit}`}
+  return html`<div role="slider" tabindex="0" class=${`trace-handle is-${end} of-${mark.kind}`} style=${{left: `${x.to(value)}px`}} aria-valuenow=${value} aria-valuetext=${`${short(value, 6)} ${unit}`}
     aria-valuemin=${range[0]} aria-valuemax=${range[1]} aria-label=${`${end === 'from' ? 'Begin' : 'End'} of ${id}, ${label}`} ...${drag} onKeyDown=${press}
     onBlur=${() => onMove(mark, end, value, false)} data-test=${`handle:${id}:${end}`}></div>`;
 }
@@ -215,7 +215,7 @@ export function Trace({file, mapping, info, shown, marks, range: given, onRange,
     const [left, right] = [mark.from, mark.to].map((value) => x.to(Math.min(Math.max(value, range[0]), range[1])));
     const [handle, wide] = [{mark, x, range, unit: info.axis.unit, onMove: onMark}, right - left];
     return html`<span key=${mark.id} class=${`trace-mark is-${mark.kind}`} style=${{left: `${left}px`, width: `${Math.max(wide, 0)}px`}}>${wide > 60 ? mark.label : ''}</span>
-        <${Handle} key=${`${mark.id}<`} end="from" ...${handle} /><${Handle} key=${`${mark.id}>`} end="to" ...${handle} />`;
+        ${!mark.isFixed && html`<${Handle} key=${`${mark.id}<`} end="from" ...${handle} />`}<${Handle} key=${`${mark.id}>`} end="to" ...${handle} />`;
   })}</div>
     <div class="trace-bar" ...${slider} aria-label="Part that is shown" ...${slide} data-test="trace-bar"><canvas ref=${bar} />
       <span class="trace-window" style=${{left: `${over.to(range[0])}px`, width: `${over.to(range[1]) - over.to(range[0])}px`}}></span></div>

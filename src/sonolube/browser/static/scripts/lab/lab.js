@@ -4,13 +4,11 @@ import {ask} from '../api.js';
 import {stored, useListening} from '../state.js';
 
 const BETWEEN = 2000; // ms from one look to the next
-const LINK = 'stop-link';
 /** Name by which the laboratory knows this tab, whatever it shows. */
 const HOLDER = stored('sessionStorage', 'lab-holder') ?? stored('sessionStorage', 'lab-holder', [...crypto.getRandomValues(new Uint8Array(16))]
   .map((byte) => byte.toString(16).padStart(2, '0')).join(''));
 
-let lab = null;
-let [users, timer] = [0, 0];
+let [lab, users, timer] = [null, 0, 0];
 const listeners = new Set();
 
 /** Whether a run has not ended. @param {{state: string}|null} [run] @returns {boolean} */
@@ -20,7 +18,6 @@ export const isAtWork = (run) => ['preparing', 'running', 'paused', 'stopping'].
 export async function look() {
   const {content} = await ask(`api/lab?holder=${HOLDER}`);
   if (content) lab = content;
-  if (content?.run) stored('sessionStorage', LINK, content.run.stop_link);
   listeners.forEach((listener) => listener());
   clearTimeout(timer);
   if (users) timer = setTimeout(look, BETWEEN);
@@ -45,6 +42,3 @@ export async function send(what, more, {isHeld = false, signal} = {}) {
   if (what === 'start') dispatchEvent(new Event('runstart')); // for the stop button, which every page has
   return reply;
 }
-
-/** Stop page of the run at work, which its runner serves itself, also when the workbench is gone. @returns {string} */
-export const stopLink = () => lab?.run?.stop_link || stored('sessionStorage', LINK);

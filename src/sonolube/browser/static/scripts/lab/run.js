@@ -1,16 +1,88 @@
 /** The run at work, or the latest: its state, step and time, what it asks, its live channels, and how near its limits are. */
-import {html, useEffect, useRef} from '../../vendor/htm-preact-3.1.1.js';
+import {html, useEffect, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {useConnection} from '../api.js';
+import {Chart} from '../chart.js';
 import {short} from '../chart-scale.js';
 import {duration} from '../job.js';
 import {Button, capital, Card, classes, Warning} from '../parts.js';
-import {isAtWork} from './lab.js';
-import {Strips, useLive} from './strips.js';
+import {isAtWork, look} from './lab.js';
+/** @typedef {[number, number, number, number]} Slice time, lowest, highest, mean */
 
 const NEAR = 0.8; // of the way to a limit, from which it is marked
+const [SPAN, AGAIN] = [20, 1000]; // s shown, ms after a stream has ended
+const [COLOUR, MARGIN, NONE] = ['#0072b2', 0.15, new Map()]; // the margin of the range, above and below
 /** Sign of each state beside its word. */
 const SIGNS = {preparing: '…', running: '▶', paused: '❚❚', stopping: '◼', safe: '✓', failed: '✕', lost: '✕', completed: '✓', stopped: '◼', refused: '✕'};
 const OFF = {failed: 'Cut the power: motor or drive did not confirm that it is off.', lost: 'Cut the power: the program of this run is gone, and nobody knows whether motor and drive are off.'};
+
+/** Enter the slices of a frame into those of the last seconds. @param {Map<string, Slice[]>} kept @param {Object<string, Slice[]>} channels */
+function enter(kept, channels) {
+  for (const [name, slices] of Object.entries(channels)) {
+    const known = kept.get(name) ?? [];
+    const all = [...known, ...slices.filter(([time]) => !known.length || time > known.at(-1)[0])]; // a stream that begins again repeats some
+    kept.set(name, all.filter(([time]) => time >= all.at(-1)[0] - SPAN));
+  }
+}
+
+/** Read frames until the stream ends. @param {(frame: Object) => void} take @param {AbortSignal} signal */
+async function read(take, signal) {
+  const response = await fetch('api/lab/live', {signal, headers: {'x-status': 'in-header'}});
+  const reader = response.body.pipeThrough(new TextDecoderStream()).getReader();
+  let rest = '';
+  for (let part = await reader.read(); !part.done; part = await reader.read()) {
+    const lines = (rest + part.value).split('\n');
+    rest = lines.pop();
+    for (const line of lines) take(JSON.parse(line));
+  }
+}
+
+/** Last frame of a run while it is at work, and the slices of each channel. @param {string} run @param {boolean} isFollowed @returns {{frame: Object|null, kept: Map<string, Slice[]>}} */
+export function useLive(run, isFollowed) {
+  const [{of, frame, kept}, show] = useState({});
+  useEffect(() => {
+    if (!isFollowed) return undefined;
+    const [slices, end] = [new Map(), new AbortController()];
+    const take = (next) => {
+      enter(slices, next.channels ?? {});
+      show({of: run, frame: next, kept: slices});
+    };
+    const follow = async () => {
+      await read(take, end.signal).catch(() => null);
+      if (end.signal.aborted) return;
+      look();
+      setTimeout(() => end.signal.aborted || follow(), AGAIN);
+    };
+    follow();
+    return () => end.abort();
+  }, [run, isFollowed]);
+  return of === run ? {frame, kept} : {frame: null, kept: NONE};
+}
+
+/** Ends of an axis that hold all values; those of before while they fit, so that the axis stands still. */
+function endsOf(lows, highs, before) {
+  if (!lows.length) return before ?? [0, 1];
+  const [low, high] = [Math.min(...lows), Math.max(...highs)];
+  const room = (high - low || Math.abs(high) || 1) * MARGIN;
+  return before?.[0] <= low && before[1] >= high && before[1] - before[0] < 2.5 * (high - low + room) ? before : [low - room, high + room];
+}
+
+/** Channels that have slices, a panel each; with reduced motion they fill page by page rather than move. @param {{channels: {name: string, label: string, unit: string}[], kept: Map<string, Slice[]>, time: number}} properties */
+export function Strips({channels, kept, time}) {
+  const ends = useRef(new Map());
+  const start = matchMedia('(prefers-reduced-motion: reduce)').matches ? Math.floor(time / SPAN) * SPAN : Math.max(0, time - SPAN);
+  const panels = channels.filter(({name}) => kept.has(name)).map(({name, label, unit}) => {
+    const slices = kept.get(name).filter(([at]) => at >= start);
+    const [x, low, high, mean] = [0, 1, 2, 3].map((place) => slices.map((slice) => slice[place]));
+    ends.current.set(name, endsOf(low, high, ends.current.get(name)));
+    const [lowest, highest] = ends.current.get(name);
+    return {
+      title: `${capital(label)} ${short(mean.at(-1), 3)} ${unit}`, x: {label: 'Time', text: 'Time [s]', unit: 's', lowest: start, highest: start + SPAN},
+      y: {label, text: `[${unit}]`, unit, lowest, highest},
+      parts: [{kind: 'band', x, low, high, colour: COLOUR, opacity: 0.3}, {kind: 'line', x, y: mean, colour: COLOUR}],
+    };
+  });
+  return panels.length > 0 && html`<${Chart} name="live" chart=${{panels, columns: 2, size: [8, Math.ceil(panels.length / 2)], legend: 'none'}} />`;
+}
 
 /** What the operator is asked; beside the page, so that the stop button stays within reach. */
 function Prompt({prompt, confirm}) {
@@ -45,8 +117,8 @@ export function RunCard({run, devices, isHolder, ask}) {
     ${now.outcome && now.reason && html`<p data-test="run-reason">Ended: ${now.reason}</p>`}
     ${now.trips?.length > 0 && html`<${Warning}>${now.trips.map((trip) => html`<p key=${trip}>${trip}</p>`)}<//>`}
     ${now.prompt && isAtWork(now) && html`<${Prompt} prompt=${now.prompt} confirm=${isHolder && confirm} />`}
-    <${Strips} channels=${devices.channels} kept=${kept} time=${now.time ?? 0} />
     ${isAtWork(now) && frame?.limits?.length > 0 && html`<h3>How near the limits are</h3><ul class="limits" data-test="limits">${frame.limits.map((each) => html`<${Limit} key=${each.label} ...${each} />`)}</ul>`}
+    <${Strips} channels=${devices.channels} kept=${kept} time=${now.time ?? 0} />
     <p class="hint">${now.is_virtual ? `Virtual rig ${now.rig}, seed ${now.seed}` : devices.title}${now.folder && `; recorded in ${now.folder}`}</p>
   <//>`;
 }

@@ -51,8 +51,8 @@ export function Runs({turn}) {
         <td><input type="checkbox" checked=${ticked.includes(id)} onChange=${() => tick(id)} aria-label=${`Compare ${title}, ${when(created)}`} data-test="tick" /></td>
         <th scope="row">${title} ${tags.map((tag) => html`<span key=${tag} class="tag">${tag}</span> `)}</th><td>${when(created)}</td><td>${state}</td>
         <td>${device}${seed == null ? '' : `, seed ${seed}`}</td><td>${duration(time)}</td>
-        <td><${Button} kind="small" onClick=${() => change({view: {open: view.open === id ? null : id}})} aria-expanded=${view.open === id} data-test="open-run">${view.open === id ? 'close' : 'open'}<//>
-          <${Button} kind="small" onClick=${() => toData(id)} data-test="to-data">to Data<//></td></tr>`)}</tbody></table></div>
+        <td><${Button} kind="small" onClick=${() => change({view: {open: view.open === id ? null : id}})} aria-expanded=${view.open === id} aria-label=${`${view.open === id ? 'Close' : 'Open'} ${title}`} data-test="open-run">${view.open === id ? 'close' : 'open'}<//>
+          <${Button} kind="small" onClick=${() => toData(id)} aria-label=${`${title} to the page Data`} data-test="to-data">to Data<//></td></tr>`)}</tbody></table></div>
       <p class="row"><${Button} onClick=${() => change({view: {compare: 'yes'}})} disabled=${!ticked.length} data-test="compare">Compare ${ticked.length || ''} ticked<//></p>`}
     <${Refusal} text=${note} role="alert" />${(content?.caveats ?? []).map((line) => html`<p key=${line} class="hint">${line}</p>`)}
     ${view.open && html`<div class="lab-opened" data-test="opened-run"><${Failure} failure=${opened.failure} />${opened.content && html`<${Shown} answer=${opened.content} of=${view.open} />`}</div>`}

@@ -1,8 +1,8 @@
 /** Steps of a protocol as blocks along time, in lanes; the fields of the chosen one, and what changes the steps. */
 import {html, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
-import {refusedBy, TextField} from '../fields.js';
+import {Labelled, refusedBy, TextField} from '../fields.js';
 import {duration} from '../job.js';
-import {Button, classes, Refusal, Select, words} from '../parts.js';
+import {Button, capital, classes, Refusal, Select, words} from '../parts.js';
 
 const LANES = {repeat: 'Repeat', steps: 'Steps', motor: 'Motor', drive: 'Drive', record: 'Record'};
 const LANE_OF = {repeat: 'repeat', motor_speed: 'motor', drive: 'drive', voltage_steps: 'drive', sweep: 'drive', acquire: 'record'};
@@ -23,7 +23,7 @@ function endOf(steps, at) {
 }
 
 /** What stands on a block: its entries, or its kind. */
-const textOf = ({label, fields}) => fields.map(({text}) => text).filter(Boolean).join(', ') || label;
+const textOf = ({label, fields}) => fields.filter(({kind, text}) => text && kind !== 'flag').map(({text}) => text).join(', ') || label;
 
 /** Number of the step so many further in its list of steps. */
 const beside = (number, by) => [...number.split('.').slice(0, -1), Number(number.split('.').at(-1)) + by].join('.');
@@ -34,10 +34,8 @@ function Entry({field, wrong, set}) {
   const refusal = wrong?.key === field.key ? wrong.text : '';
   const [text, shared] = [refusal ? wrong.typed : field.text, {id, 'data-test': `entry:${field.key}`, ...refusedBy(id, refusal)}];
   const choices = field.kind === 'flag' ? ['true', 'false'] : field.choices;
-  return html`<div class="field"><label for=${id}>${field.label}</label>
-    ${choices?.length ? html`<${Select} choices=${['', ...choices].map((each) => [each, words(each)])} value=${text} onChange=${(event) => set(field.key, event.target.value)} ...${shared} />`
-    : html`<${TextField} text=${text} unit=${field.unit} onText=${(typed, isMoving) => !isMoving && set(field.key, typed)} onSettle=${() => null} ...${shared} />`}
-    <${Refusal} text=${refusal} id=${`${id}-refusal`} data-test="entry-refusal" /></div>`;
+  return html`<${Labelled} id=${id} label=${capital(field.label)} refusal=${refusal}>${choices?.length ? html`<${Select} choices=${['', ...choices].map((each) => [each, words(each) || 'usual'])} value=${text} onChange=${(event) => set(field.key, event.target.value)} ...${shared} />`
+    : html`<${TextField} text=${text} unit=${field.unit} onText=${(typed, isMoving) => !isMoving && set(field.key, typed)} onSettle=${() => null} ...${shared} />`}<//>`;
 }
 
 /** The time line above what stands in two columns: entries of the chosen step with `start` below them, and `children`. @param {{protocol: Object, edit: (changes: Object) => Promise<boolean>, wrong: {key: string, typed: string, text: string}|null, start: any, children: any}} properties */
@@ -67,7 +65,7 @@ export function TimeLine({protocol: {steps, kinds, limits, metadata}, edit, wron
   };
   const entries = (fields) => fields.map((field) => html`<${Entry} key=${field.key} field=${field} wrong=${wrong} set=${set} />`);
   return html`<div data-test="time-line">
-    <div class="lanes" style=${{gridTemplateColumns: ['max-content', ...widths.map((width) => `${width}px`)].join(' ')}} ref=${line} onKeyDown=${press}
+    <div class="lanes table-frame" style=${{gridTemplateColumns: ['max-content', ...widths.map((width) => `${width}px`)].join(' ')}} ref=${line} onKeyDown=${press}
       role="listbox" aria-orientation="horizontal" aria-label="Steps along time">
       ${lanes.map((lane, row) => html`<span key=${lane} class="lane" style=${{gridRow: row + 1}} aria-hidden="true">${LANES[lane]}</span>`)}
       ${steps.map((each, place) => html`<button type="button" key=${each.number} role="option" aria-selected=${place === at} tabindex=${place === at ? 0 : -1}

@@ -4,6 +4,7 @@ import {Failure, TextTable} from '../answer.js';
 import {ask} from '../api.js';
 import {addFiles, dropFile, filesOf, setOwn, settingsOf, useInfo, useMeasured} from '../data/files.js';
 import {NOTHING} from '../fields.js';
+import {Waiting} from '../job.js';
 import {Button, Card, classes, FileButton, Loading, Refusal, Sheet, useDrop} from '../parts.js';
 import {change, useApp} from '../state.js';
 import {save} from '../take-away.js';
@@ -55,7 +56,7 @@ function FileLine({file, own, view, isShown, onResult}) {
 function Shown({file, own, settled, view}) {
   const {content: info, failure} = useInfo(file, own);
   const module = useModule(info?.kind);
-  if (!info) return failure ? html`<${Failure} failure=${failure} />` : html`<${Loading}>Reading ${file.name}…<//>`;
+  if (!info) return failure ? html`<${Failure} failure=${failure} />` : html`<${Loading}>Reading ${file.name}…<//><p class="row"><${Waiting} isWaiting=${true} /></p>`;
   if (module === null) return html`<p class="notice">${KINDS[info.kind][0]}: this workbench has no view of it yet.</p>`;
   if (!module) return html`<${Loading}>Reading the view…<//>`;
   const set = (partial, options) => setOwn(view, file, partial, options);

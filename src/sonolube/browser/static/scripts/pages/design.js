@@ -106,7 +106,7 @@ function Plan({state: {view, rig}, schema, note, takeRuns}) {
     ${content && html`<div class="parts" aria-busy=${reply.isWaiting} data-test="plan">
       <${Statement} isDim=${isDim} text=${content.blocks[0].text.replace(/^.*: (?=\d+ points)/s, '')} />
       <${Saves} task="plan" args=${args} isOff=${isDim} files=${[['Sheet to print (HTML)', 'report'], ['Table of the runs (CSV)', '-runs.csv'], ['Table and protocols (ZIP)', 'all']]} />
-      <${Card} id="plan-points" title="Points" isDim=${isDim}><${TextTable} ...${content.blocks.find(({kind}) => kind === 'table')} test="plan-points" /><//>
+      <${Card} id="plan-points" title="Points" isDim=${isDim}><${TextTable} ...${content.blocks.find(({kind}) => kind === 'table')} kind="table-frame" test="plan-points" /><//>
       <${Results} content=${content} isDim=${isDim} of=${JSON.stringify(args)} />
       <${Card} id="plan-runs" title="Runs in their order" isDim=${isDim}><${TextTable} heads=${['run', 'block', 'point', 'specimens', 'vibration']} test="plan-runs"
         rows=${content.answer.runs.map((run) => [run.run, run.block, run.point, run.specimens.join(', '), run.vibrated.map(statesText).join('; ')])} /><//></div>`}`;

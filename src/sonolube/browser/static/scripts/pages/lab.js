@@ -53,25 +53,6 @@ function usePlan(view, rig) {
   return {...(own ? {content: own, refused: []} : reply), named, edit, wrong, isBusy: isEditing || !named || reply.isWaiting};
 }
 
-/** Choice of a protocol, its time line, and the dry run beside it. */
-function Plan({lab, plan: {named, content, failure, refused, edit, wrong, isBusy}, start}) {
-  const isOwn = named?.text !== undefined;
-  const choices = lab.protocols.map(({name, title}) => [name, title]);
-  return html`<${Card} id="plan-title" title="Protocol" data-test="plan">
-    <${RigChoice} view=${useRig().view} /><label for="protocol">Protocol</label><div class="row">
-      <${Select} id="protocol" class="grow" choices=${isOwn ? [['', `${content?.title ?? named.name} (own)`], ...choices] : choices} value=${isOwn ? '' : named?.name}
-        onChange=${(event) => change({view: {protocol: event.target.value, steps: null}})} data-test="protocol" />
-      <${FileButton} accept=".toml" label="Protocol file" onFile=${async (file) => keep(file.name.replace(/\.toml$/i, ''), await file.text())} test="protocol-file" data-test="open-protocol">Open…<//>
-      <${Button} onClick=${() => save({name: `${named.name}.toml`, kind: 'application/toml', text: content.text})} disabled=${!content} data-test="save-protocol">Save as TOML<//></div>
-    <${Failure} failure=${failure} /><${RefusedNote} refused=${refused} />
-    ${!content && !failure && html`<${Loading}>Reading the protocol…<//>`}
-    ${content && html`<p class="hint">${content.source}</p><${TimeLine} protocol=${content} edit=${edit} wrong=${wrong} start=${start}>
-      <section aria-labelledby="dry-run-title" aria-busy=${isBusy} data-test="dry-run"><h2 id="dry-run-title">Dry run</h2>
-        ${content.refusals.length > 0 && html`<${Warning} data-test="impossible"><strong>Impossible on this rig:</strong>${content.refusals.map((line) => html`<p key=${line}>${line}</p>`)}<//>`}
-        <${Shown} answer=${content.dry_run} of=${content.text} /></section><//>`}
-  <//>`;
-}
-
 /** What a run is begun with, and its start. */
 function Start({lab, view, rig, plan: {named, content, failure: fault, wrong, isBusy}, isFree}) {
   const isPossible = content?.refusals.length === 0;
@@ -93,19 +74,33 @@ function Start({lab, view, rig, plan: {named, content, failure: fault, wrong, is
       ${wrong && html`<span class="refusal">An entry of the protocol is refused: mend it first.</span>`}</p></section>`;
 }
 
+/** Choice of a protocol, its time line, and the dry run beside it. */
+function Plan({lab, plan, start}) {
+  const {named, content, failure, refused, edit, wrong, isBusy} = plan;
+  const isOwn = named?.text !== undefined;
+  const choices = lab.protocols.map(({name, title}) => [name, title]);
+  return html`<${Card} id="plan-title" title="Protocol" data-test="plan">
+    <${RigChoice} view=${useRig().view} /><label for="protocol">Protocol</label><div class="row">
+      <${Select} id="protocol" class="grow" choices=${isOwn ? [['', `${content?.title ?? named.name} (own)`], ...choices] : choices} value=${isOwn ? '' : named?.name}
+        onChange=${(event) => change({view: {protocol: event.target.value, steps: null}})} data-test="protocol" />
+      <${FileButton} accept=".toml" label="Protocol file" onFile=${async (file) => keep(file.name.replace(/\.toml$/i, ''), await file.text())} test="protocol-file" data-test="open-protocol">Open…<//>
+      <${Button} onClick=${() => save({name: `${named.name}.toml`, kind: 'application/toml', text: content.text})} disabled=${!content} data-test="save-protocol">Save as TOML<//></div>
+    <${Failure} failure=${failure} /><${RefusedNote} refused=${refused} />
+    ${!content && !failure && html`<${Loading}>Reading the protocol…<//>`}
+    ${content && html`<p class="hint">${content.source}</p><${TimeLine} protocol=${content} edit=${edit} wrong=${wrong} start=${start}>
+      <section aria-labelledby="dry-run-title" aria-busy=${isBusy} data-test="dry-run"><h2 id="dry-run-title">Dry run</h2>
+        ${content.refusals.length > 0 && html`<${Warning} data-test="impossible"><strong>Impossible on this rig:</strong>${content.refusals.map((line) => html`<p key=${line}>${line}</p>`)}<//>`}
+        <${Shown} answer=${content.dry_run} of=${content.text} /></section><//>`}
+  <//>`;
+}
+
 /** Who holds the laboratory, and its last run where that was lost. */
 function Holder({lab}) {
   const [failure, setFailure] = useState(null);
-  const [done, setDone] = useState([]);
-  const to = async (what, more, isHeld) => {
-    const reply = await send(what, more, {isHeld});
-    setFailure(reply.failure ?? null);
-    setDone(reply.content?.done ?? []);
-  };
+  const to = async (what, more, isHeld) => setFailure((await send(what, more, {isHeld})).failure ?? null);
   const {is_me: isMe, is_free: isFree} = lab.holder;
   return html`${lab.lost && html`<${Warning} data-test="lost-run"><strong>${lab.lost.text}</strong>
       <p><${Button} onClick=${() => to('recover', {is_off: true}, true)} data-test="recover">I have cut the power and seen that motor and drive are off<//></p><//>`}
-    ${done.map((line) => html`<p key=${line} class="hint">${line}</p>`)}
     <p class="row"><span role="status" data-test="holder">${isMe ? 'This tab holds the laboratory.' : isFree ? 'Nobody holds the laboratory.' : 'Watching; the laboratory is held by another tab. The stop button works here too.'}</span>
       ${(isMe || isFree) && html`<${Button} kind="small" onClick=${() => to(isMe ? 'release' : 'hold')} data-test="hold">${isMe ? 'release it' : 'hold it'}<//>`}</p>
     <${Failure} failure=${failure} />`;

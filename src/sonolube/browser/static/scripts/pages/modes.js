@@ -82,24 +82,23 @@ function Panel({asked: {name, work, offered, part, file, args}, known, view, rea
 /** Typed array of a text in base 64. */
 const numbersOf = (text, Kind) => new Kind(Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)).buffer);
 
-/** Surface and modes of the job that gave an answer; null before they are read. */
+/** Job that gave an answer, with its surface and modes where it has them; null before they are read. */
 function useShapes({job, content, isOld}) {
   const [found, setFound] = useState({});
-  const hasShapes = content?.files.includes(SHAPES);
   useEffect(() => {
-    if (!hasShapes || isOld) return;
-    ask(fileOf(job.id, SHAPES)).then(({content: read}) => read && setFound({
+    if (!content || isOld) return;
+    if (!content.files.includes(SHAPES)) setFound({id: job.id, of: content});
+    else ask(fileOf(job.id, SHAPES)).then(({content: read}) => read && setFound({
       id: job.id, of: content, positions: numbersOf(read.points, Float32Array), triangles: numbersOf(read.triangles, Uint32Array), axis: read.axis, modes: read.modes,
     }));
   }, [content, isOld]);
-  return found.of === content && hasShapes ? found : null;
+  return content && found.of === content ? found : null;
 }
 
 /** Lengths of vectors, as values of the vertices. */
 const lengthsOf = (vectors) => Float32Array.from({length: vectors.length / 3}, (_, at) => Math.hypot(...vectors.subarray(3 * at, 3 * at + 3)));
-
 /** Largest of some numbers. */
-const most = (values) => values.reduce((largest, each) => Math.max(largest, each), 0);
+const most = (values) => values.reduce((largest, each) => Math.max(largest, each), -Infinity);
 
 /** Modes in a table, and the chosen one in motion. */
 function Modes({shapes, view, tuned}) {
@@ -111,7 +110,7 @@ function Modes({shapes, view, tuned}) {
   const values = useMemo(() => (isStress ? numbersOf(chosen.stress, Float32Array) : sizes), [chosen, isStress, sizes]);
   const side = useMemo(() => Math.max(...[0, 1, 2].map((place) => {
     const along = positions.filter((_, at) => at % 3 === place);
-    return along.reduce((a, b) => Math.max(a, b)) - along.reduce((a, b) => Math.min(a, b));
+    return most(along) + most(along.map((each) => -each));
   })), [positions]);
   const planes = ({nodal_planes: found}) => (found ? found.map((each) => each.toFixed(1)).join(', ') || 'none' : '–');
   const ratio = ({end_ratio: found}) => found?.toPrecision(3) ?? '–';
@@ -121,9 +120,10 @@ function Modes({shapes, view, tuned}) {
       label=${`${chosen.name}, ${chosen.frequency}, in motion; its numbers stand in the table`} quantity=${isStress ? 'Equivalent stress' : 'Displacement'} unit=${isStress ? 'MPa/µm' : ''} />
       <div class="row">${chosen.peak_stress !== null && html`<label for="modes-colour">Colours</label><${Select} id="modes-colour" value=${isStress ? 'stress' : 'displacement'} data-test="colour"
         choices=${[['displacement', 'Displacement'], ['stress', 'Stress']]} onChange=${(event) => change({view: {colour: event.target.value}})} />`}
-        <span class="hint">Over the displacement of ${chosen.reference}.</span></div></div>
+        <span class="hint">Over ${chosen.reference}.</span></div></div>
     <div class="table-frame" tabindex="0" role="group" aria-label="Modes"><table class="table" data-test="mode-table">
-      <caption>Choose a mode to see it. Ends and nodal planes are of the cross-sections along ${axis}: displacement of axial modes, deflection of bending ones, turn of torsional ones.</caption>
+      <caption>Choose a mode to see it. Ends and nodal planes are of the cross-sections along ${axis}: displacement of axial modes, deflection of bending ones, turn of torsional ones.
+        ${modes[0].peak_stress !== null && ' Stress is per micrometre of the largest displacement, in a tuned mode of that of the working face.'}</caption>
       <thead><tr>${heads.map((head) => html`<th key=${head} scope="col">${head}</th>`)}</tr></thead>
       <tbody>${modes.map((mode) => html`<tr key=${mode.name}><th scope="row"><label class="mode-choice"><input type="radio" name="mode" checked=${mode === chosen}
         onChange=${() => change({view: {mode: mode.name}})} data-test=${`mode:${mode.name}`} /> ${mode.name}</label></th><td>${mode.frequency}</td><td>${ratio(mode)}</td><td>${planes(mode)}</td>
@@ -137,7 +137,7 @@ function Result({content, shapes, isOld, view, of}) {
   const files = content.files.filter((name) => name !== SHAPES);
   const drawing = files.find((name) => name.endsWith('-drawing.svg'));
   return html`<div class=${isOld ? 'is-dim' : ''} data-test="modes-result">
-    ${shapes && html`<${Modes} shapes=${shapes} view=${view} tuned=${content.answer.mode} />`}
+    ${shapes?.modes && html`<${Modes} shapes=${shapes} view=${view} tuned=${content.answer.mode} />`}
     <div class="columns">
       <div class="stack"><${Card} id="modes-numbers" title="Result"><${Blocks} blocks=${content.blocks} /><//></div>
       <div class="stack"><${Card} id="modes-caveats" title="Caveats and assumptions"><${Caveats} answer=${content} isMoving=${false} of=${of} hasFields=${false} /><//>
