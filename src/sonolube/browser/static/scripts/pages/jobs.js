@@ -35,12 +35,10 @@ function useWatched(path, isBusy) {
 const ofRun = ({device, rig, protocol, seed, recordings, version}) => [version && `sonolube ${version}`, rig || device, rig && device, protocol, seed != null && `seed ${seed}`,
   recordings > 0 && `${recordings} ${recordings === 1 ? 'recording' : 'recordings'}`].filter(Boolean).join(', ');
 
-const secondsSince1970 = (created) => (typeof created === 'number' ? created : Date.parse(created) / 1000);
-
 /** Jobs and runs as rows of one list, the latest first. */
 const listed = (jobs, runs) => [
   ...jobs.map((job) => ({...job, kind: 'job', title: job.label || job.task, job})),
-  ...runs.map((run) => ({...run, kind: 'run', of: ofRun(run), created: secondsSince1970(run.created), seconds: run.duration ?? 0})),
+  ...runs.map((run) => ({...run, kind: 'run', of: ofRun(run), created: Date.parse(run.created) / 1000, seconds: run.duration ?? 0})),
 ].sort((one, other) => other.created - one.created);
 
 /** Rows that the view asks for. */
