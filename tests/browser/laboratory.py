@@ -85,7 +85,7 @@ class Asked:
 
     def get(self, path: str, **headers: str) -> tuple[int, bytes]:
         """Status and body, asked with the cookie."""
-        status, _, body = self.raw("GET", path, **({"cookie": self.cookie} | headers))
+        status, _, body = self.raw("GET", path, None, **({"cookie": self.cookie} | headers))
         return status, body
 
     def post(self, path: str, content: object = None, **headers: str) -> tuple[int, Any]:

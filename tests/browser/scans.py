@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from sonolube.checks import Floats
 from sonolube.example_files import example_file
 from sonolube.models.actuator import ButterworthVanDyke, MotionalBranch, circuit_admittance
 from sonolube.models.dynamics import electrical_admittance
@@ -17,13 +18,13 @@ CIRCUIT = ButterworthVanDyke(
 )
 
 
-def groove_heights() -> np.ndarray:
+def groove_heights() -> Floats:
     """Heights of a tilted, rough plane with a straight groove along y in the middle of x, some missing. [m]"""
     rng = np.random.default_rng(5)
     x, y = SPACING * np.arange(240), SPACING * np.arange(160)
     across = (x - x.mean()) / (GROOVE_WIDTH / 2)
     groove = -GROOVE_DEPTH * np.maximum(0.0, 1 - across**2)
-    heights = groove + 2e-3 * x + 1e-3 * y[:, None] + 50e-9 * rng.standard_normal((160, 240))
+    heights: Floats = groove + 2e-3 * x + 1e-3 * y[:, None] + 50e-9 * rng.standard_normal((160, 240))
     heights[rng.random(heights.shape) < 0.01] = np.nan
     return heights
 

@@ -24,6 +24,7 @@ from sonolube.laboratory.catalogue import catalogued_runs
 from sonolube.laboratory.records import Run, read_run
 from sonolube.operating_system import process_start
 from sonolube.tasks.files import NamedBytes
+from sonolube.tasks.lab.protocol_run import RunAnswer
 
 packages = packages_of_acme
 
@@ -65,7 +66,9 @@ def test_a_run_outlives_its_killed_server_and_equals_one_that_nobody_disturbed(
         assert (ended["state"], ended["outcome"], ended["seed"]) == ("safe", "completed", 3)
         record = record_of(tmp_path, ended)
         protocol, rig = NamedBytes("short.toml", SHORT.encode()), example_file("tribometer").source
-        undisturbed = sl.lab.run(protocol, rig=rig, seed=3, out=tmp_path / "runs").run
+        answer = sl.lab.run(protocol, rig=rig, seed=3, out=tmp_path / "runs")
+        assert isinstance(answer, RunAnswer)
+        undisturbed = answer.run
         runs_are_compared(second, [record, undisturbed])
     assert notes_of(record) == notes_of(undisturbed)
     for name, values in undisturbed.dataset().items():

@@ -92,7 +92,7 @@ def test_tables_protocols_and_datasets_of_jobs_are_read_as_before(folder: Path) 
 def test_a_table_of_runs_with_the_line_is_read(tmp_path: Path) -> None:
     text = (EXAMPLES / "tribometer-runs.csv").read_text(encoding="utf-8")
     (tmp_path / "plain.csv").write_text(text, encoding="utf-8")
-    (tmp_path / "named.csv").write_text(marked(".csv", text, LINE), encoding="utf-8")
+    (tmp_path / "named.csv").write_text(str(marked(".csv", text, LINE)), encoding="utf-8")
     plain, named = (read_runs(tmp_path / f"{name}.csv") for name in ("plain", "named"))
     assert repr(named).replace("named.csv", "plain.csv") == repr(plain)
 
@@ -108,8 +108,8 @@ def test_grids_drawings_solids_and_pages_with_the_line_are_read(tmp_path: Path) 
     body = horn_body("stepped_horn", frequency=20e3, wave_speed=5e3, sizes={})
     profile = horn_profile(body, length=body.length)
     assert profile is not None
-    drawing = ezdxf.read(io.StringIO(marked("a.dxf", profile_dxf(profile, []), LINE)))
+    drawing = ezdxf.read(io.StringIO(str(marked("a.dxf", profile_dxf(profile, []), LINE))))
     assert not drawing.audit().errors
     solid = body.geometry_at(body.length)
-    (tmp_path / "a.step").write_text(marked("a.step", step_text(solid), LINE), encoding="utf-8")
+    (tmp_path / "a.step").write_text(str(marked("a.step", step_text(solid), LINE)), encoding="utf-8")
     assert read_step(tmp_path / "a.step").volume == pytest.approx(solid.volume, rel=1e-6)

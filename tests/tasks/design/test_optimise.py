@@ -62,7 +62,7 @@ def test_the_figure_of_the_front_for_a_browser_has_a_point_of_each_design(front:
 
 def test_a_reduction_is_the_friction_that_it_leaves(rigs: Path) -> None:
     by_friction, by_reduction = (
-        optimise(rigs / "tribometer.toml", over={"drive.frequency": "21kHz:23kHz"}, **target)  # type: ignore[arg-type]
+        optimise(rigs / "tribometer.toml", over={"drive.frequency": "21kHz:23kHz"}, **target)
         for target in ({"target_friction": 0.341 * 0.5}, {"target_reduction": "50 %"})
     )
     assert by_reduction.object()["designs"][0] == approx_object(by_friction.object()["designs"][0])

@@ -85,4 +85,4 @@ def test_a_text_for_a_plain_number_and_a_fraction_for_a_whole_one_are_refused(
 def test_whole_numbers_of_numpy_are_whole_numbers(rigs: Path) -> None:
     plain = plan(rigs / "power_map.toml", **FEW).object()
     numbers = {name: np.int64(value) for name, value in {"points": 2, "seed": 0}.items()}
-    assert plan(rigs / "power_map.toml", **(FEW | numbers)).object() == plain  # type: ignore[arg-type]
+    assert plan(rigs / "power_map.toml", **(FEW | numbers)).object() == plain
