@@ -219,13 +219,8 @@ def test_a_study_that_takes_long_is_cancelled(page: Page, workbench: Served) -> 
     expect(page.get_by_test_id("study")).to_be_visible()
 
 
-RUN: dict[str, Any] = {
-    "id": "20200101-120000",
-    "title": "Sweep",
-    "created": "2020-01-01T12:00:00",
-    "state": "completed",
-}
-RUN |= {"device": "virtual", "protocol": "resonance", "seed": 3, "recordings": 2, "version": "1.2.3"}
+RUN: dict[str, Any] = {"id": "20200101-120000", "title": "Sweep", "state": "completed", "device": "virtual"}
+RUN |= {"created": "2020-01-01T12:00:00", "protocol": "resonance", "seed": 3, "recordings": 2, "version": "1.2.3"}
 RECORD = {"answer": {}, "charts": [], "blocks": [{"kind": "rows", "rows": [["outcome", "completed"]]}]}
 
 
