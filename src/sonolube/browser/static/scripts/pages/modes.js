@@ -120,7 +120,8 @@ function Modes({shapes, view, tuned}) {
       label=${`${chosen.name}, ${chosen.frequency}, in motion; its numbers stand in the table`} quantity=${isStress ? 'Equivalent stress' : 'Displacement'} unit=${isStress ? 'MPa/µm' : ''} />
       <div class="row">${chosen.peak_stress !== null && html`<label for="modes-colour">Colours</label><${Select} id="modes-colour" value=${isStress ? 'stress' : 'displacement'} data-test="colour"
         choices=${[['displacement', 'Displacement'], ['stress', 'Stress']]} onChange=${(event) => change({view: {colour: event.target.value}})} />`}
-        <span class="hint">Over ${chosen.reference}.</span></div></div>
+        <span class="hint">Over ${chosen.reference}.${chosen.peak_stress !== null
+          && ' At a sharp corner the peak stress has no limit: it grows with the finer mesh, so round it.'}</span></div></div>
     <div class="table-frame" tabindex="0" role="group" aria-label="Modes"><table class="table" data-test="mode-table">
       <caption>Choose a mode to see it. Ends and nodal planes are of the cross-sections along ${axis}: displacement of axial modes, deflection of bending ones, turn of torsional ones.
         ${modes[0].peak_stress !== null && ' Stress is per micrometre of the largest displacement, in a tuned mode of that of the working face.'}</caption>
