@@ -23,6 +23,13 @@ def test_a_pool_waits_for_submitted_work() -> None:
     assert not threads_running()
 
 
+def test_threads_that_python_does_not_wait_for_do_not_count() -> None:
+    held = threading.Event()
+    threading.Thread(target=held.wait, daemon=True, name="sonolube stop page").start()
+    assert not threads_running()
+    held.set()
+
+
 def interrupted(held: threading.Event, done: list[int]) -> None:
     with thread_pool(1) as pool:
         pool.submit(held.wait, 60)

@@ -31,7 +31,7 @@ def thread_pool(workers: int, *, few_points: bool = False) -> Iterator[ThreadPoo
 
 def threads_running() -> bool:
     """Whether threads of an interrupted run are still at work, which Python would wait for at exit."""
-    return any(thread.name.startswith(_NAME) for thread in threading.enumerate())
+    return any(thread.name.startswith(_NAME) and not thread.daemon for thread in threading.enumerate())
 
 
 def map_chunks(function: Callable[[slice], Result], points: int, workers: int) -> list[Result]:
