@@ -71,10 +71,9 @@ def test_a_script_of_the_gallery_draws_a_figure_with_labels_inside_its_edges(scr
     assert any(axes.get_ylabel() or named_ticks(axes) for axes in figure.axes)
 
 
-@pytest.mark.parametrize("notebook", NOTEBOOKS, ids=name_of)
-def test_a_notebook_runs_and_prints_and_draws(notebook: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_page_of_a_notebook_has_what_it_prints_and_draws(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    cells = executed(notebook)
+    cells = executed(ROOT / "examples" / "notebooks" / "control_engineer.py")  # the others are run in a kernel
     assert any(printed for _, printed, _ in cells)
     assert any(figures for _, _, figures in cells)
 

@@ -55,7 +55,7 @@ def test_progress_is_one_line_that_disappears() -> None:
 
 
 @pytest.mark.parametrize("script", NOTEBOOKS, ids=lambda path: path.stem)
-def test_a_shipped_notebook_shows_each_figure_once(script: Path) -> None:
+def test_a_shipped_notebook_prints_and_shows_each_figure_once(script: Path) -> None:
     file = script.with_suffix(".ipynb")
     assert file.read_text(encoding="utf-8") == jupyter(cells_of(script)), "run python docs/_ext/notebooks.py"
     notebook = NOTEBOOK.read(file, as_version=4)
@@ -66,3 +66,6 @@ def test_a_shipped_notebook_shows_each_figure_once(script: Path) -> None:
         if cell.cell_type == "code":
             draws = cell.source.strip().splitlines()[-1].startswith(("sl.plot(", "shown_in_notebooks("))
             assert pictures(cell.outputs) == draws, cell.source
+    outputs = [output for cell in notebook.cells for output in cell.get("outputs", ())]
+    assert pictures(outputs)
+    assert any(output.output_type == "stream" or "text/plain" in output.get("data", {}) for output in outputs)

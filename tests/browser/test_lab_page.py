@@ -133,7 +133,8 @@ def test_steps_are_chosen_inserted_moved_and_removed_by_keys_and_refusals_keep_w
 ) -> None:
     show(page, workbench, "tribometer", {}, where="lab")
     page.get_by_test_id("protocol-file").set_input_files(str(folder / "short.toml"))
-    page.get_by_test_id("step:6").wait_for()
+    expect(page.get_by_test_id("plan")).to_contain_text("own test")
+    at_rest(page)
     reach(page, "step:1")
     for _ in range(2):
         page.keyboard.press("ArrowRight")
@@ -167,7 +168,8 @@ def test_steps_are_chosen_inserted_moved_and_removed_by_keys_and_refusals_keep_w
 def test_what_a_dry_run_finds_impossible_starts_only_anyway(page: Page, folder: Path, workbench: Served) -> None:
     show(page, workbench, "tribometer", {}, where="lab")
     page.get_by_test_id("protocol-file").set_input_files(str(folder / "long.toml"))
-    page.get_by_test_id("step:3").wait_for()
+    expect(page.get_by_test_id("plan")).to_contain_text("own test")
+    at_rest(page)
     page.get_by_test_id("entry:limits.current_maximum").fill("1 mA")
     page.keyboard.press("Enter")
     expect(page.get_by_test_id("impossible")).to_contain_text("current")
