@@ -116,7 +116,7 @@ $(RIVAL)/installed: $(VENV)/uv requirements/surfalize.txt
 
 $(LOWEST)/installed: $(VENV)/uv pyproject.toml
 	$(PYTHON) -m venv --clear $(LOWEST)
-	$(BIN)/uv pip install --quiet --compile-bytecode --python $(LOWEST)/bin/python --resolution lowest-direct --editable .
+	$(BIN)/uv pip install --quiet --compile-bytecode --python $(LOWEST)/bin/python --resolution lowest-direct --editable ".[app]"
 	$(BIN)/uv pip install --quiet --compile-bytecode --python $(LOWEST)/bin/python pytest pytest-xdist hypothesis
 	@touch $@
 

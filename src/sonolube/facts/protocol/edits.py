@@ -184,7 +184,7 @@ def edited_protocol_text(text: str, changes: Mapping[str, Any]) -> str:
 def _schema(model: type[BaseModel]) -> dict[str, Any]:
     """JSON schema of a table; that of a repeat, which may hold others, refers to itself."""
     schema = model.model_json_schema()
-    found: dict[str, Any] = schema.get("$defs", {}).get(model.__name__, schema) if "$ref" in schema else schema
+    found: dict[str, Any] = schema if "properties" in schema else schema["$defs"][model.__name__]
     return found
 
 
