@@ -100,11 +100,12 @@ def test_one_tab_steers_others_watch_and_anybody_stops(lab: Asked, tmp_path: Pat
     assert "another tab has the laboratory" in refused(lab, "hold", {"holder": OTHER})
     assert "a run is at work" in refused(lab, "start", {"holder": HOLDER, "protocol": {"name": "map_test"}, "rig": RIG})
     asked = lab.run_when(lambda run: run["prompt"])["prompt"]
-    assert asked == {"task": "load", "text": "Bring the pin into contact."}
-    assert "watches only" in refused(lab, "confirm", {"holder": OTHER, "text": asked["text"], "is_done": True})
-    assert "another prompt" in refused(lab, "confirm", {"holder": HOLDER, "text": "Wipe it.", "is_done": True})
-    assert "true or false" in refused(lab, "confirm", {"holder": HOLDER, "text": asked["text"], "is_done": 1})
-    assert lab.post("/api/lab/confirm", {"holder": HOLDER, "text": asked["text"], "is_done": True})[0] == 200
+    assert asked == {"number": 1, "task": "load", "text": "Bring the pin into contact."}
+    assert "watches only" in refused(lab, "confirm", {"holder": OTHER, "number": 1, "is_done": True})
+    assert "another prompt" in refused(lab, "confirm", {"holder": HOLDER, "number": 2, "is_done": True})
+    assert "true or false" in refused(lab, "confirm", {"holder": HOLDER, "number": 1, "is_done": 1})
+    assert "of the prompt" in refused(lab, "confirm", {"holder": HOLDER, "number": True, "is_done": True})
+    assert lab.post("/api/lab/confirm", {"holder": HOLDER, "number": 1, "is_done": True})[0] == 200
     frames = first_frames(lab, 8)  # then the page is closed
     assert_slices_follow_one_another(frames)
     limits = {each["label"]: each for each in frames[-1]["limits"]}

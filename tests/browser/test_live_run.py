@@ -1,7 +1,8 @@
 """Live state of a run: slices of blocks, limits, and readers that are slow."""
 
+from threading import Thread
+
 import numpy as np
-import pytest
 from hypothesis import given, strategies as st
 from pytest import approx
 from tests.browser.laboratory import until
@@ -91,10 +92,23 @@ def caught_up(live: LiveRun, after: int) -> tuple[int, int, int]:
         count += len(frame["channels"]["a"])
 
 
-@pytest.mark.parametrize("text", ["", "Wipe the pin."])
-def test_only_the_prompt_that_is_shown_is_confirmed(text: str) -> None:
+def test_a_prompt_that_is_confirmed_twice_leaves_the_next_one_of_the_same_text_to_be_read() -> None:
+    live, answers = LiveRun({}, RunControl()), list[bool]()
+    prompt = Prompt(text="Mount the pin.")
+    assert live.answer(0, is_done=True) == "nothing is asked now"
+    asking = Thread(target=lambda: answers.extend(live.ask(prompt) for _ in range(2)))
+    asking.start()
+    until(lambda: live.status()["prompt"] is not None)
+    assert live.answer(1, is_done=True) == ""
+    until(lambda: (live.status()["prompt"] or {}).get("number") == 2)
+    assert "another prompt is shown now" in live.answer(1, is_done=True)  # as by a second click
+    assert live.status()["prompt"] == {"number": 2, "task": prompt.task, "text": prompt.text}
+    assert live.answer(2, is_done=False) == ""
+    asking.join()
+    assert answers == [True, False]
+
+
+def test_a_prompt_is_not_waited_for_where_the_run_is_to_end() -> None:
     control = RunControl()
-    live = LiveRun({}, control)
-    assert live.answer(text, is_done=True) == "nothing is asked now"
     control.stop("ended")
-    assert not live.ask(Prompt(text="Mount the pin."))
+    assert not LiveRun({}, control).ask(Prompt(text="Mount the pin."))

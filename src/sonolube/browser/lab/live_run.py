@@ -56,6 +56,7 @@ class LiveRun:
         self._state, self._outcome, self._reason, self._doing = "preparing", "", "", ""
         self._time, self._trips = 0.0, list[str]()
         self._prompt: Prompt | None = None
+        self._asked = 0  # prompts until now, which number them: two may have the same text
         self._answer: bool | None = None
         self._folder = Path()
         self.has_ended = Signal()
@@ -102,6 +103,7 @@ class LiveRun:
 
     def ask(self, prompt: Prompt) -> bool:
         """Wait until a prompt is confirmed or denied on a page, or the run is to end."""
+        self._asked += 1
         self._answer, self._prompt = None, prompt
         wait = Signal()
         while self._answer is None and not self._control.stop_reason:
@@ -109,12 +111,11 @@ class LiveRun:
         self._prompt = None
         return bool(self._answer)
 
-    def answer(self, text: str, *, is_done: bool) -> str:
+    def answer(self, number: int, *, is_done: bool) -> str:
         """Answer the present prompt, and return why that is refused; empty where it is not."""
-        prompt = self._prompt
-        if prompt is None:
+        if self._prompt is None:
             return "nothing is asked now"
-        if prompt.text != text:
+        if number != self._asked:
             return "another prompt is shown now; read it, and confirm that"
         self._answer = is_done
         return ""
@@ -141,7 +142,7 @@ class LiveRun:
             "kind": "" if point is None else point.kind,
             "doing": self._doing,
             "time": self._time,
-            "prompt": None if prompt is None else {"task": prompt.task, "text": prompt.text},
+            "prompt": None if prompt is None else {"number": self._asked, "task": prompt.task, "text": prompt.text},
             "trips": list(self._trips),
             "is_paused": self._state == "paused" or self._control.is_paused,
             "is_stopping": bool(self._control.stop_reason) or self._state == "stopping",

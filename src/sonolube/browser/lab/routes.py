@@ -8,7 +8,7 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import AsyncIterator, Mapping
+from collections.abc import AsyncIterator, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
@@ -39,7 +39,7 @@ from sonolube.operating_system import ON_WINDOWS
 
 _STARTING: Final = 120.0  # s, until the process of a run listens
 _POLL: Final = 0.05  # s
-_STOPPING: Final = 10.0  # s, until a signal stops a run whose process does not answer
+_STOPPING: Final = 5.0  # s, until a signal stops a run whose process does not answer; an answer takes up to 3 s
 _LOOKING: Final = 3.0  # s, for the state of a run
 _LOOPBACK: Final = ("localhost", "127.0.0.1")
 _PART: Final = 2**20  # bytes
@@ -67,6 +67,7 @@ class Laboratory:
         self._devices: dict[str, Any] | None = None
         self._starting = asyncio.Lock()
         self._seen: dict[str, Any] = {}  # of the run that answered last
+        self._ended: dict[str, RunnerRecord] = {}  # by their names, which change no more
 
     def routes(self) -> list[Route]:
         """Routes below `/api/lab`."""
@@ -192,7 +193,7 @@ class Laboratory:
         content = await content_of(request)
         self._hold.require(_holder(content))
         record = self._require_at_work()
-        told = {key: content.get(key) for key in ("text", "is_done")}
+        told = {key: content.get(key) for key in ("number", "is_done")}
         await asked(record, "POST", "/" + request.url.path.rpartition("/")[2], told)
         return json_response(await self._told(record, request))
 
@@ -279,14 +280,20 @@ class Laboratory:
         known = self._seen if self._seen.get("id") == record.id else _bare(record)
         return known | silent | fixed | {"stop_link": record.link()}
 
-    def _records(self) -> list[RunnerRecord]:
-        """Records of runners that have listened or ended, the latest first."""
-        found = (read_record(self._folder, name) for name in record_names(self._folder))
-        return [each for each in found if each.process is not None or each.end is not None]
+    def _records(self) -> Iterator[RunnerRecord]:
+        """Records of runners that have listened or ended, the latest first; those that have ended are read once."""
+        names = record_names(self._folder)
+        self._ended = {name: self._ended[name] for name in names if name in self._ended}
+        for name in names:
+            record = self._ended.get(name) or read_record(self._folder, name)
+            if record.end is not None:
+                self._ended[name] = record
+            if record.process is not None or record.end is not None:
+                yield record
 
     def _latest(self) -> RunnerRecord | None:
         """Record of the run at work, else of the latest one."""
-        return self._at_work() or next(iter(self._records()), None)
+        return self._at_work() or next(self._records(), None)
 
     def _at_work(self) -> RunnerRecord | None:
         """Record of the run at work; None where there is none."""

@@ -131,11 +131,13 @@ class StopServer:
                 self._requests.resume()
             case _:
                 content = await content_of(request)
-                is_done = content.get("is_done")
+                number, is_done = content.get("number"), content.get("is_done")
                 if not isinstance(is_done, bool):
                     raise InvalidInput("is_done: say true or false", key="is_done")
-                if refusal := self._live.answer(str(content.get("text", "")), is_done=is_done):
-                    raise InvalidInput(refusal, key="text")
+                if isinstance(number, bool) or not isinstance(number, int):
+                    raise InvalidInput("number: give that of the prompt on screen", key="number")
+                if refusal := self._live.answer(number, is_done=is_done):
+                    raise InvalidInput(refusal, key="number")
         return _json(self._live.status())
 
     async def _stream(self, request: Request) -> Response:

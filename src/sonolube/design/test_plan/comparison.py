@@ -66,7 +66,7 @@ def published_scatter() -> Scatter:
         reduction=float(np.hypot(intrinsic, vibrated)),
         source="D Table 2.3, steady friction at three speeds",
         caveat="the scatter is that of windows within one test (D Table 2.3); between specimens it is usually larger:"
-        " give own repeats by --runs, or --scatter",
+        " give own repeats, or their scatter",
     )
 
 

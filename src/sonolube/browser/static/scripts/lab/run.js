@@ -87,7 +87,7 @@ export function Strips({channels, kept, time}) {
 /** What the operator is asked; beside the page, so that the stop button stays within reach. */
 function Prompt({prompt, confirm}) {
   const dialog = useRef(null);
-  useEffect(() => dialog.current.focus(), [prompt.text]);
+  useEffect(() => dialog.current.focus(), [prompt.number]);
   return html`<div class="prompt" role="dialog" aria-labelledby="prompt-title" aria-describedby="prompt-text" tabindex="-1" ref=${dialog} data-test="prompt">
     <h2 id="prompt-title">To do: ${prompt.task}</h2><p id="prompt-text">${prompt.text}</p>
     <p class="hint">Motor and drive are off, and the clock of the protocol stands. Is it done?</p>
@@ -105,7 +105,7 @@ export function RunCard({run, devices, isHolder, ask}) {
   const isGone = useConnection().connection !== 'ok';
   const now = {...run, ...(isAtWork(run) && frame)};
   const word = isAtWork(now) ? now.state : now.outcome || now.state;
-  const confirm = (isDone) => ask('confirm', {text: now.prompt.text, is_done: isDone});
+  const confirm = (isDone) => ask('confirm', {number: now.prompt.number, is_done: isDone});
   return html`<${Card} id="run-title" title=${now.title || now.protocol} data-test="run">
     <p class="row"><span class=${`run-state is-${word}`} role="status" data-test="run-state"><span aria-hidden="true">${SIGNS[word]}</span> ${word}${isGone && ' when last seen'}</span>
       <span data-test="run-step">${now.step && `step ${now.step} of ${now.steps}`}${now.doing && `: ${now.doing.replace(/^step [\d.]+, /, '')}`}</span></p>
