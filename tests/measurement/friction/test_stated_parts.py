@@ -40,6 +40,7 @@ def test_stated_steps_and_rest_give_levels_and_reduction() -> None:
     for step, level in ((first, INTRINSIC), (driven, INTRINSIC * (1 - REDUCTION)), (last, INTRINSIC)):
         assert step["friction_force"] == approx(level, abs=4 * step["friction_force_uncertainty"])
     assert driven["friction_reduction"] == approx(REDUCTION, abs=4 * driven["friction_reduction_uncertainty"])
+    assert [step["voltage_peak_to_peak"] for step in (first, driven, last)] == [0.0, 28.0, 0.0]
     assert (driven["start_time"], driven["end_time"]) == approx((23.1, 43.0), abs=0.02)
     assert any("at rest as stated, and left out: 0 s to 2.9 s" in caveat for caveat in answer.caveats())
     assert any("taken off as its zero" in caveat for caveat in answer.caveats())
@@ -52,6 +53,7 @@ def test_a_stated_voltage_is_as_good_as_a_recorded_one() -> None:
     stated = steps_of(sl.measure.friction(recording(**{"sliding_speed (m/s)": 0.02 * (T >= 3)}), step=kept))
     for one, other in zip(recorded, stated, strict=True):
         assert one["friction_force"] == approx(other["friction_force"], abs=3e-3)
+        assert one["voltage_peak_to_peak"] == approx(other["voltage_peak_to_peak"])
 
 
 def test_a_part_leaves_out_the_rest() -> None:
