@@ -220,7 +220,7 @@ def test_a_study_that_takes_long_is_cancelled(page: Page, workbench: Served) -> 
 
 
 RUN: dict[str, Any] = {"id": "20200101-120000", "title": "Sweep", "state": "completed", "device": "virtual"}
-RUN |= {"created": "2020-01-01T12:00:00", "protocol": "resonance", "seed": 3, "recordings": 2, "version": "1.2.3"}
+RUN |= {"created": 1577880000.0, "protocol": "resonance", "seed": 3, "recordings": 2, "version": "1.2.3"}
 RECORD = {"answer": {}, "charts": [], "blocks": [{"kind": "rows", "rows": [["outcome", "completed"]]}]}
 
 
@@ -238,6 +238,7 @@ def test_jobs_and_runs_stand_in_one_list(page: Page) -> None:
     of_job, of_run = page.get_by_test_id("of").all()
     expect(of_job).to_contain_text(f"sonolube {sl.__version__}: sonolube contact tribometer.toml --set '{LOAD}=4 N'")
     expect(of_run).to_have_text("sonolube 1.2.3, virtual, resonance, seed 3, 2 recordings")
+    expect(page.locator("#main")).to_contain_text("run 20200101-120000, Jan 1, 2020")
     page.get_by_test_id("job-search").fill("seed 3")
     expect(page.locator("#main h2")).to_have_text(["Sweep"])
     page.get_by_test_id("open-run").click()

@@ -199,6 +199,10 @@ def test_steps_become_runs_that_predictions_read(staircase: dict[str, Any], plac
     entries = {each["key"]: each["text"] for each in found["entries"]}
     assert float(entries["friction.friction_coefficient"]) == approx(1 / 3, abs=0.002)
     assert entries["contact.normal_load"] == "3 N"
+    assert not any(key.startswith("uncertainty.") for key in entries)
+    assert "friction_reduction_uncertainty" not in runs
+    narrowed = sl.predict(EXAMPLES / "rigs" / "tribometer.toml", runs=tmp_path / "runs.csv", draws=2000)
+    assert any("0.05 is taken for each ratio" in caveat for caveat in narrowed.caveats())
 
 
 def test_rows_are_appended_to_a_table_of_runs(staircase: dict[str, Any], places: Places, tmp_path: Path) -> None:

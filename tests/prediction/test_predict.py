@@ -222,6 +222,17 @@ def test_the_scatter_of_repeats_is_taken_for_the_uncertainty_of_each_run(tmp_pat
     assert found["measured_uncertainty"].to_numpy() == approx(np.std([0.40, 0.44, 0.36, 0.42, 0.38], ddof=1))
 
 
+@mark.parametrize(("stated", "is_said"), [(0.0008, True), (0.05, False)])
+def test_standard_errors_within_a_test_are_said_to_leave_out_how_tests_differ(
+    stated: float, is_said: bool, tmp_path: Path
+) -> None:
+    head = f"{COLUMNS},friction_reduction_uncertainty"
+    rows = [f"{amplitude},20.3,{ratio},{stated}" for amplitude, ratio in ((1.2, 0.85), (2.5, 0.7))]
+    found = predict(rig(), runs=read_runs(runs_file(tmp_path, *rows, head=head)))
+    assert (f"an uncertainty of {stated:g} of their ratios, as of one test" in found.attrs["caveats"]) is is_said
+    assert (width(found) < 0.05) is is_said  # less than the printed scatter of one rig's own tests
+
+
 @mark.parametrize(
     ("rows", "message"),
     [

@@ -1,6 +1,7 @@
 """Numbers of the results of measurements for other uses: a table of numbers, rows of own runs, entries of a rig.
 
-Results are those of `measurement_object`, in JSON.
+Results are those of `measurement_object`, in JSON. The standard error of a level within one test is left out of rows
+and entries: friction of another test differs by more, and a prediction would take it for all of the uncertainty.
 """
 
 import math
@@ -38,13 +39,16 @@ def result_numbers(result: Mapping[str, Any]) -> Iterator[list[Any]]:
                     yield [f"{table} {number}", name, value, None, unit]
 
 
-def _value(result: Mapping[str, Any], name: str) -> tuple[float | None, float | None]:
-    """Value and standard uncertainty of a quantity of a result."""
+def _value(result: Mapping[str, Any], name: str) -> float | None:
+    """Value of a quantity of a result."""
     values = result.get("values")
     entry = values.get(name) if isinstance(values, Mapping) else None
-    if not isinstance(entry, Mapping):
-        return None, None
-    return _finite(entry.get("value")), _finite(entry.get("uncertainty"))
+    return _finite(entry.get("value")) if isinstance(entry, Mapping) else None
+
+
+def _level(result: Mapping[str, Any]) -> float | None:
+    """Level of the friction of a whole recording. [N]"""
+    return next((found for name in _LEVELS if (found := _value(result, name)) is not None), None)
 
 
 def _finite(value: Any) -> float | None:
@@ -75,47 +79,32 @@ def result_run_rows(result: Mapping[str, Any], conditions: Mapping[str, float]) 
         for name in ("voltage_peak_to_peak", "sliding_speed"):
             if (own := step.get(name)) is not None:
                 row[name] = own
-        if (error := step.get("friction_reduction_uncertainty")) is not None:
-            row["friction_reduction_uncertainty"] = error
         yield row
-    force, error = next((found for name in _LEVELS if (found := _value(result, name))[0] is not None), (None, None))
+    force = _level(result)
     if not steps and force is not None:
-        row = {"run": title} | {**conditions, "friction_force": force}
-        yield row if error is None else row | {"friction_force_uncertainty": error}
+        yield {"run": title} | {**conditions, "friction_force": force}
 
 
 def result_rig_entries(result: Mapping[str, Any], conditions: Mapping[str, float]) -> dict[str, str]:
     """Entries of a rig by a result and its conditions, as texts with units."""
     found = dict(conditions)
     for name in _KEYS:
-        value, _ = _value(result, name)
+        value = _value(result, name)
         if value is not None and value > 0:
             found[name] = value
     entries = {_KEYS[name]: f"{value:.4g} {quantities()[name].unit}" for name, value in found.items() if name in _KEYS}
-    coefficient, error = _coefficient(result, conditions)
-    if coefficient is not None:
-        entries[_COEFFICIENT] = f"{coefficient:.4g}"
-        if error:
-            entries[f"uncertainty.{_COEFFICIENT}"] = f"normal {error:.2g}"
-    return entries
+    coefficient = _coefficient(result, conditions)
+    return entries if coefficient is None else entries | {_COEFFICIENT: f"{coefficient:.4g}"}
 
 
-def _coefficient(result: Mapping[str, Any], conditions: Mapping[str, float]) -> tuple[float | None, float | None]:
-    """Coefficient of dry friction with its uncertainty: as measured, or by the force without vibration and the load."""
-    value, error = _value(result, "mean_coefficient")
-    if value is not None:
-        return value, error
-    load = conditions.get("normal_load")
-    if not load:
-        return None, None
-    steps = _steps(result)
+def _coefficient(result: Mapping[str, Any], conditions: Mapping[str, float]) -> float | None:
+    """Coefficient of dry friction: as measured, or by the force without vibration and the load."""
+    value, load, steps = _value(result, "mean_coefficient"), conditions.get("normal_load"), _steps(result)
+    if value is not None or not load:
+        return value
     if steps:
-        without = next((step for step in steps if step.get("voltage_peak_to_peak") == 0), {})
-        force, error = without.get("friction_force"), without.get("friction_force_uncertainty")
+        force = next((step for step in steps if step.get("voltage_peak_to_peak") == 0), {}).get("friction_force")
     else:
         vibrates = any(conditions.get(name) for name in ("voltage_peak_to_peak", "vibration_amplitude"))
-        levels = [] if vibrates else [_value(result, name) for name in _LEVELS]
-        force, error = next((each for each in levels if each[0] is not None), (None, None))
-    if force is None:
-        return None, None
-    return force / load, None if error is None else error / load
+        force = None if vibrates else _level(result)
+    return None if force is None else force / load

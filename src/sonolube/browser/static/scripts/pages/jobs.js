@@ -38,7 +38,7 @@ const ofRun = ({device, rig, protocol, seed, recordings, version}) => [version &
 /** Jobs and runs as rows of one list, the latest first. */
 const listed = (jobs, runs) => [
   ...jobs.map((job) => ({...job, kind: 'job', title: job.label || job.task, job})),
-  ...runs.map((run) => ({...run, kind: 'run', of: ofRun(run), created: Date.parse(run.created) / 1000, seconds: run.duration ?? 0})),
+  ...runs.map((run) => ({...run, kind: 'run', of: ofRun(run), seconds: run.duration ?? 0})),
 ].sort((one, other) => other.created - one.created);
 
 /** Rows that the view asks for. */
