@@ -360,7 +360,10 @@ def _uncertainty(runs: "xr.Dataset", ratio: Floats, amplitude: Floats, speed: Fl
     if np.any(stated <= 0):
         raise InvalidInput("friction_reduction_uncertainty must be positive in every run")
     if np.all(np.isfinite(stated)):
-        return stated, _too_certain(stated)
+        return stated, () if np.median(stated) >= _WITHIN_ONE_TEST else (
+            f"the runs state an uncertainty of {np.median(stated):.2g} of their ratios, as of one test: others on the"
+            f" same rig differ by about {_USUAL_UNCERTAINTY:g}, and the interval is too narrow for them",
+        )
     keys = np.round(np.log(np.stack([amplitude, speed])), 2)
     _, group, counts = np.unique(keys, axis=1, return_inverse=True, return_counts=True)
     scatter = pooled_scatter(ratio, group.ravel())
@@ -368,16 +371,6 @@ def _uncertainty(runs: "xr.Dataset", ratio: Floats, amplitude: Floats, speed: Fl
         return np.where(np.isnan(stated), scatter, stated), ()
     return np.where(np.isnan(stated), _USUAL_UNCERTAINTY, stated), (
         f"the runs state no uncertainty and hold too few repeats; {_USUAL_UNCERTAINTY:g} is taken for each ratio",
-    )
-
-
-def _too_certain(stated: Floats) -> tuple[str, ...]:
-    """Caveat where the uncertainties that runs state leave out how much tests differ."""
-    if float(np.median(stated)) >= _WITHIN_ONE_TEST:
-        return ()
-    return (
-        f"the runs state an uncertainty of {np.median(stated):.2g} of their ratios, as of one test: others on the same"
-        f" rig differ by about {_USUAL_UNCERTAINTY:g}, and the interval is too narrow for them",
     )
 
 
