@@ -1,4 +1,4 @@
-"""Mutants of the models: one changed operator, number or function each, run against the tests of their line.
+"""Mutants, one changed comparison, constant, sign, call, argument or condition each, run against their tests.
 
 A mutant is named by its file, the text of its line and the place in it, so that the list outlives changes elsewhere.
 """
@@ -13,17 +13,14 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "src" / "sonolube"
-ROOMS = {
-    "models/contact": 45, "models/friction": 60, "models/wear": 12, "models/thermal": 35, "models/actuator": 35,
-    "facts/metrics": 20, "models/surfaces": 45, "models/dynamics": 30, "models/fem": 18,
-}  # fmt: skip
 _OTHER_TESTS = (
     "tests/validation",
     "tests/rig",
@@ -35,18 +32,39 @@ _OTHER_TESTS = (
 _LIMIT = 900.0  # s, of the tests of a stage
 _NOT_A_FAILURE = (0, 4, 5)  # exit statuses of pytest: all pass, no such test, none collected
 _DEFINITIONS = (ast.FunctionDef, ast.ClassDef)
-_OPERATORS: dict[type, tuple[str, str]] = {
+_OPERATORS: dict[type, tuple[str, ...]] = {
     ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*"), ast.Pow: ("**", "*"),
     ast.Lt: ("<", ">"), ast.Gt: (">", "<"), ast.LtE: ("<=", ">"), ast.GtE: (">=", "<"),
+    ast.Eq: ("==", "!="), ast.NotEq: ("!=", "=="), ast.FloorDiv: ("//", "/"), ast.Mod: ("%", "*"),
+    ast.Is: ("is", "is not"), ast.IsNot: ("is not", "is"), ast.In: ("in", "not in"), ast.NotIn: ("not in", "in"),
 }  # fmt: skip
+_BOUNDS = {"<": "<=", "<=": "<", ">": ">=", ">=": ">"}  # where integers are compared
 _NAMES = {
     "sin": "cos", "cos": "sin", "maximum": "minimum", "minimum": "maximum", "max": "min", "min": "max", "real": "imag",
     "imag": "real", "sinh": "cosh", "cosh": "sinh", "log": "sqrt", "exp": "expm1", "argmax": "argmin",
     "argmin": "argmax", "cumsum": "cumprod", "conj": "abs", "i0e": "i1e", "i1e": "i0e", "k0": "k1",
-    "ellipk": "ellipe", "ellipe": "ellipk",
+    "ellipk": "ellipe", "ellipe": "ellipk", "any": "all", "all": "any", "floor": "ceil", "ceil": "floor",
 }  # fmt: skip
+_DROPPED = ("abs", "sorted", "reversed", "round", "sqrt", "log", "log10", "exp", "unique", "sort", "strip", "deg2rad")
 _NOT_MODELS = ("figure", "jax_kernels", "__init__", "mode_files")
-_NOT_PHYSICS = ("require", "Invalid", "Outside", "Unknown", "warn", "approx_text", "format_si", "njit", "VariantTable")
+_NOT_PHYSICS = ("Invalid", "Outside", "Unknown", "warn", "approx_text", "format_si", "njit", "VariantTable", "Field")
+_LOOKS = (
+    "size",
+    "width",
+    "alpha",
+    "zorder",
+    "dpi",
+    "pad",
+    "style",
+    "colour",
+    "color",
+    "rotation",
+    "ncol",
+    "loc",
+    "heights",
+    "columns",
+)
+_SWAPPED = 2  # arguments that are swapped, the first of a call
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -74,13 +92,16 @@ class Mutant:
     old: str
     new: str
 
+    def row(self, text: str) -> int | None:
+        """Row of the line in the text of its file, from 0; None where the line is no longer there."""
+        found = [i for i, each in enumerate(text.splitlines()) if each.strip() == self.line]
+        return found[self.occurrence] if len(found) > self.occurrence else None
+
     def applied(self, text: str) -> str | None:
         """Text of the file with the change; None where the line is no longer there."""
-        lines = text.splitlines(keepends=True)
-        found = [i for i, each in enumerate(lines) if each.strip() == self.line]
-        if len(found) <= self.occurrence:
+        if (i := self.row(text)) is None:
             return None
-        i = found[self.occurrence]
+        lines = text.splitlines(keepends=True)
         start = len(lines[i]) - len(lines[i].lstrip()) + self.column
         if not lines[i].startswith(self.old, start):
             return None
@@ -110,8 +131,39 @@ class _Finder(ast.NodeVisitor):
         for statement in node.body:
             self.visit(statement)
 
+    def visit_ClassDef(self, node: ast.ClassDef) -> None:
+        for statement in node.body:
+            self.visit(statement)
+
     def visit_Subscript(self, node: ast.Subscript) -> None:
         self.visit(node.value)
+
+    def visit_Slice(self, node: ast.Slice) -> None: ...
+
+    def visit_If(self, node: ast.If) -> None:
+        if ast.unparse(node.test) in ("TYPE_CHECKING", "__name__ == '__main__'"):
+            return
+        self._inverted(node.test)
+        self.generic_visit(node)
+
+    def visit_IfExp(self, node: ast.IfExp) -> None:
+        self._inverted(node.test)
+        self.generic_visit(node)
+
+    def visit_comprehension(self, node: ast.comprehension) -> None:
+        for test in node.ifs:
+            self._inverted(test)
+        self.generic_visit(node)
+
+    def visit_BoolOp(self, node: ast.BoolOp) -> None:
+        old, new = ("and", "or") if isinstance(node.op, ast.And) else ("or", "and")
+        self._between(node.values[0], node.values[1], old, new)
+        self.generic_visit(node)
+
+    def visit_Expr(self, node: ast.Expr) -> None:
+        if isinstance(node.value, ast.Call) and (text := self._text(node.value)):
+            self._add(node.lineno, node.col_offset, text, "None")
+        self.generic_visit(node)
 
     def visit_Call(self, node: ast.Call) -> None:
         name = ast.unparse(node.func).rpartition(".")[2]
@@ -119,7 +171,13 @@ class _Finder(ast.NodeVisitor):
             return
         if name in _NAMES and node.func.end_col_offset is not None and node.func.lineno == node.func.end_lineno:
             self._add(node.func.lineno, node.func.end_col_offset - len(name), name, _NAMES[name])
+        self._dropped(node, name)
+        self._swapped(node)
         self.generic_visit(node)
+
+    def visit_keyword(self, node: ast.keyword) -> None:
+        if not str(node.arg).endswith(_LOOKS):
+            self.generic_visit(node)
 
     def visit_Attribute(self, node: ast.Attribute) -> None:
         if node.attr in ("real", "imag") and node.end_lineno == node.lineno and node.end_col_offset is not None:
@@ -127,11 +185,22 @@ class _Finder(ast.NodeVisitor):
         self.generic_visit(node)
 
     def visit_BinOp(self, node: ast.BinOp) -> None:
-        self._operator(node.left, node.op, node.right)
+        if not _is_text(node.left) and not _is_text(node.right):
+            self._operator(node.left, node.op, node.right)
+        self.generic_visit(node)
+
+    def visit_AugAssign(self, node: ast.AugAssign) -> None:
+        old, *new = _OPERATORS.get(type(node.op), ("",))
+        if new and not _is_text(node.value):
+            self._between(node.target, node.value, f"{old}=", f"{new[0]}=")
         self.generic_visit(node)
 
     def visit_Compare(self, node: ast.Compare) -> None:
-        self._operator(node.left, node.ops[0], node.comparators[0])
+        right = node.comparators[0]
+        self._operator(node.left, node.ops[0], right)
+        old = _OPERATORS.get(type(node.ops[0]), ("",))[0]
+        if old in _BOUNDS and (_is_whole(node.left) or _is_whole(right)):
+            self._between(node.left, right, old, _BOUNDS[old])
         self.generic_visit(node)
 
     def visit_UnaryOp(self, node: ast.UnaryOp) -> None:
@@ -140,22 +209,80 @@ class _Finder(ast.NodeVisitor):
         self.generic_visit(node)
 
     def visit_Constant(self, node: ast.Constant) -> None:
-        if type(node.value) in (int, float) and node.end_col_offset is not None:
+        if node.end_col_offset is None:
+            return
+        if type(node.value) is bool:
+            self._add(node.lineno, node.col_offset, str(node.value), str(not node.value))
+        if type(node.value) in (int, float):
             old = self.lines[node.lineno - 1][node.col_offset : node.end_col_offset]
             value = node.value
-            self._add(node.lineno, node.col_offset, old, "1" if value == 0 else "2" if value == 1 else f"(1.5 * {old})")
+            self._add(node.lineno, node.col_offset, old, "1" if value == 0 else "2" if value == 1 else _larger(old))
+
+    def _inverted(self, test: ast.expr) -> None:
+        if not isinstance(test, ast.Compare | ast.NamedExpr) and (text := self._text(test)):
+            self._add(test.lineno, test.col_offset, text, f"(not ({text}))")
+
+    def _dropped(self, node: ast.Call, name: str) -> None:
+        """A call of one argument that leaves it as it is."""
+        if name in _DROPPED and len(node.args) == 1 and not node.keywords:
+            text, argument = self._text(node), self._text(node.args[0])
+            if text and argument:
+                self._add(node.lineno, node.col_offset, text, f"({argument})")
+
+    def _swapped(self, node: ast.Call) -> None:
+        """The first two arguments by position, or the values of two by name, in each other's place."""
+        pair: Sequence[ast.expr] = node.args[:_SWAPPED]
+        if len(pair) < _SWAPPED:
+            named = [each.value for each in node.keywords]
+            pair = [value for value in named if isinstance(value, ast.Name | ast.Attribute)][:_SWAPPED]
+        if len(pair) < _SWAPPED or any(isinstance(each, ast.Constant | ast.Starred | ast.JoinedStr) for each in pair):
+            return
+        first, second = pair
+        before, after = self._text(first), self._text(second)
+        if before and after and first.lineno == second.lineno and before != after:
+            line = self.lines[first.lineno - 1]
+            between = line[first.end_col_offset : second.col_offset]
+            self._add(first.lineno, first.col_offset, f"{before}{between}{after}", f"{after}{between}{before}")
 
     def _operator(self, left: ast.expr, op: ast.AST, right: ast.expr) -> None:
-        if type(op) not in _OPERATORS or left.end_lineno != right.lineno or left.end_col_offset is None:
+        if type(op) in _OPERATORS:
+            old, new = _OPERATORS[type(op)]
+            self._between(left, right, old, new)
+
+    def _between(self, left: ast.expr, right: ast.expr, old: str, new: str) -> None:
+        if left.end_lineno != right.lineno or left.end_col_offset is None:
             return
-        old, new = _OPERATORS[type(op)]
         between = self.lines[right.lineno - 1][left.end_col_offset : right.col_offset]
-        if between.count(old) == 1 and not ("*" in old and old == "*" and "**" in between):
+        if between.count(old) == 1 and not (old == "*" and "**" in between):
             self._add(right.lineno, left.end_col_offset + between.index(old), old, new)
+
+    def _text(self, node: ast.expr) -> str:
+        """Text of an expression on one line; "" of one on several."""
+        if node.lineno != node.end_lineno or node.end_col_offset is None:
+            return ""
+        return self.lines[node.lineno - 1][node.col_offset : node.end_col_offset]
 
     def _add(self, row: int, column: int, old: str, new: str) -> None:
         if self.lines[row - 1].isascii():
             self.places.append((row, column, old, new))
+
+
+def _is_text(node: ast.expr) -> bool:
+    """Whether an expression is plainly a text or a list, whose sum has no difference."""
+    return isinstance(node, ast.JoinedStr | ast.List | ast.Tuple) or (
+        isinstance(node, ast.Constant) and isinstance(node.value, str | bytes)
+    )
+
+
+def _is_whole(node: ast.expr) -> bool:
+    """Whether an expression is plainly a whole number."""
+    counted = isinstance(node, ast.Call) and ast.unparse(node.func) == "len"
+    return counted or (isinstance(node, ast.Constant) and type(node.value) is int and node.value > 0)
+
+
+def _larger(old: str) -> str:
+    """Constant half as large again, a whole one by one more."""
+    return f"({old} + 1)" if old.isdecimal() and int(old) > 1 else f"(1.5 * {old})"
 
 
 def mutants_of(file: Path) -> list[Mutant]:
@@ -177,15 +304,15 @@ def _mutant(file: Path, lines: list[str], row: int, column: int, old: str, new: 
     )  # fmt: skip
 
 
-def sampled(kept: Sequence[Mutant] = (), *, seed: int = 0) -> Iterator[Mutant]:
-    """Mutants drawn from every room of models, with those kept as many as ROOMS says, at most one a line."""
+def sampled(rooms: Mapping[str, int], *, kept: Sequence[Mutant] = (), seed: int = 0) -> Iterator[Mutant]:
+    """Mutants drawn from rooms, with those kept as many as a room is to have, at most one a line."""
     rng = random.Random(seed)
-    for room, number in ROOMS.items():
-        files = sorted((SOURCE / room).rglob("*.py"))
-        physics = [file for file in files if not any(word in file.as_posix() for word in _NOT_MODELS)]
-        found = [mutant for file in physics for mutant in mutants_of(file)]
+    for room, number in rooms.items():
+        files = sorted((SOURCE / room).rglob("*.py")) or [SOURCE / room]
+        computing = [file for file in files if not any(word in file.as_posix() for word in _NOT_MODELS)]
+        found = [mutant for file in computing for mutant in mutants_of(file)]
         rng.shuffle(found)
-        lines = {(mutant.file, mutant.line) for mutant in kept if mutant.file.startswith(f"{room}/")}
+        lines = {(mutant.file, mutant.line) for mutant in kept if mutant.file.startswith(room)}
         for mutant in found:
             if (mutant.file, mutant.line) not in lines and len(lines) < number:
                 lines.add((mutant.file, mutant.line))
@@ -243,40 +370,50 @@ def _compiled_with(file: str) -> Iterator[str]:
             del kernels[other]
 
 
-def killed_by(mutant: Mutant, first: str = "", *, stages: int = 3) -> str:
-    """Test that fails with the mutant, "" where all pass.
+@cache
+def _copy() -> Path:
+    """Copy of the package for this process, whose mutants follow one another."""
+    folder = Path(tempfile.mkdtemp(prefix="mutants-"))
+    return Path(shutil.copytree(SOURCE, folder / "sonolube"))
+
+
+def first_failure(mutant: Mutant, stages: Sequence[Sequence[str]], *, limit: float = _LIMIT) -> str:
+    """First test that fails with a mutant among stages of tests, "" where all pass.
 
     Parameters
     ----------
     mutant : Mutant
-    first : str
-        A test to try before the others, such as that which killed it before.
-    stages : int
-        How many stages of `tests_of` to try.
+    stages : sequence of sequence of str
+        Names of tests or of their files; a stage runs in one process, the next only where it passes.
+    limit : float
+        Of a stage, after which the mutant counts as found: a mutant may loop. [s]
 
     Raises
     ------
     LookupError
         If the line of the mutant is no longer there.
     """
-    with tempfile.TemporaryDirectory() as folder:
-        copy = Path(shutil.copytree(SOURCE, Path(folder) / "sonolube"))
-        file = copy / mutant.file
-        changed = mutant.applied(file.read_text(encoding="utf-8"))
-        if changed is None:
-            raise LookupError(f"the line of a mutant is gone: {mutant}")
-        file.write_text(changed, encoding="utf-8")
-        for module in map(Path, _compiled_with(mutant.file)):  # callers would run what they were compiled with
-            for compiled in (copy / module.parent / "__pycache__").glob(f"{module.stem}.*"):
-                compiled.unlink()
-        environment = {**os.environ, "PYTHONPATH": folder, "OPENBLAS_NUM_THREADS": "1", "MPLBACKEND": "Agg"}
-        for tests in [[first] if first else [], *tests_of(mutant.file)[:stages]]:
-            if tests and (failed := _failed(tests, environment)):
+    original = (SOURCE / mutant.file).read_text(encoding="utf-8")
+    changed = mutant.applied(original)
+    if changed is None:
+        raise LookupError(f"the line of a mutant is gone: {mutant}")
+    copy = _copy()
+    for module in map(Path, _compiled_with(mutant.file)):  # callers would run what they were compiled with
+        for compiled in (copy / module.parent / "__pycache__").glob(f"{module.stem}.*"):
+            compiled.unlink()
+    environment = {**os.environ, "PYTHONPATH": str(copy.parent), "OPENBLAS_NUM_THREADS": "1", "MPLBACKEND": "Agg"}
+    environment["PYTHONDONTWRITEBYTECODE"] = "1"
+    (copy / mutant.file).write_text(changed, encoding="utf-8")
+    try:
+        for tests in stages:
+            if tests and (failed := _failed(tests, environment, limit)):
                 return failed
+    finally:
+        (copy / mutant.file).write_text(original, encoding="utf-8")
     return ""
 
 
-def _failed(tests: list[str], environment: dict[str, str]) -> str:
+def _failed(tests: Sequence[str], environment: dict[str, str], limit: float) -> str:
     """First test that fails, or the tests' names where they did not end in time; "" where all pass."""
     options = ["-x", "-q", "--no-header", "-p", "no:cacheprovider", "--tb=no", "-rfE"]
     run = subprocess.Popen(
@@ -289,11 +426,11 @@ def _failed(tests: list[str], environment: dict[str, str]) -> str:
         start_new_session=True,
     )
     try:
-        output, _ = run.communicate(timeout=_LIMIT)
+        output, _ = run.communicate(timeout=limit)
     except subprocess.TimeoutExpired:
         os.killpg(run.pid, signal.SIGKILL)
         run.communicate()
-        return f"{' '.join(tests)} did not end within {_LIMIT:.0f} s"
+        return f"{len(tests)} tests did not end within {limit:.0f} s"
     if run.returncode in _NOT_A_FAILURE:
         return ""
     named = [
@@ -315,25 +452,12 @@ def _is_there(mutant: Mutant) -> bool:
     return file.exists() and mutant.applied(file.read_text(encoding="utf-8")) is not None
 
 
-def main(list_file: str, records: str) -> None:
-    """Fill a list up to the number of mutants of every room: sample those that it lacks, run and add them.
-
-    Parameters
-    ----------
-    list_file : str
-        JSON, written in the end; entries of survivors are to be given their reason, or a test that kills them.
-    records : str
-        JSON lines of the new entries, continued where an earlier run stopped.
-    """
-    path = Path(records)
-    done = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()] if path.exists() else []
-    entries = entries_of(Path(list_file)) + done
-    with path.open("a", encoding="utf-8") as stream:
-        for mutant in sampled([Mutant(**entry["mutant"]) for entry in entries]):
-            entries.append({"mutant": asdict(mutant), "killed_by": killed_by(mutant), "equivalent": ""})
-            stream.write(json.dumps(entries[-1]) + "\n")
-            stream.flush()
-    Path(list_file).write_text(json.dumps(entries, indent=1) + "\n", encoding="utf-8")
+def main(room: str, number: str, seed: str = "0") -> None:
+    """Print mutants drawn from a folder or file below src/sonolube, each with the test of its room that fails."""
+    for mutant in sampled({room.removesuffix("/"): int(number)}, seed=int(seed)):
+        killed = first_failure(mutant, tests_of(mutant.file)[:2])
+        sys.stdout.write(f"{'killed  ' if killed else 'SURVIVED'} {mutant}\n    {killed}\n")
+        sys.stdout.flush()
 
 
 if __name__ == "__main__":

@@ -3,9 +3,10 @@
 from collections import Counter
 
 from pytest import mark
-from reliability.mutation import ROOMS, SOURCE
+from reliability.mutant_list import MutantList
+from reliability.mutation import SOURCE, Mutant
 from reliability.page import PAGE, page
-from reliability.studies import NAMES, mutants_of_models, study
+from reliability.studies import NAMES, mutants_above_models, mutants_of_models, study
 from reliability.study import attempt, judged
 
 
@@ -26,8 +27,9 @@ def test_the_page_of_reliability_is_that_of_its_data() -> None:
     assert PAGE.read_text(encoding="utf-8") == page()
 
 
-def test_the_listed_mutants_are_a_whole_sample_of_which_few_survive() -> None:
-    listed = mutants_of_models.kept()
-    assert Counter("/".join(entry["mutant"]["file"].split("/")[:2]) for entry in listed) == ROOMS
-    killable = [entry for entry in listed if not entry["equivalent"]]
-    assert sum(bool(entry["killed_by"]) for entry in killable) >= 0.95 * len(killable)
+@mark.parametrize("mutants", [mutants_of_models.LIST, mutants_above_models.LIST], ids=lambda each: each.name)
+def test_the_listed_mutants_are_a_whole_sample_of_which_few_survive(mutants: MutantList) -> None:
+    rooms = Counter(mutants.room(Mutant(**entry["mutant"])) for entry in mutants.entries)
+    assert rooms == mutants.rooms
+    killable = [entry for entry in mutants.entries if not entry["equivalent"]]
+    assert sum(bool(entry["killed_by"]) for entry in killable) >= mutants.bar * len(killable)
