@@ -14,10 +14,10 @@ OUT := out
 export SURFALIZE_PYTHON ?= $(abspath $(wildcard $(RIVAL)/bin/python))
 
 .DEFAULT_GOAL := help
-.PHONY: help demo app browser quick test lowest surfalize lint docs bench reliability lock clean
+.PHONY: help demo app browser quick test test-rest test-all times arithmetic lowest surfalize lint docs bench reliability lock clean
 
 help: ## list the targets
-	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 16
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 16
 
 # first what a user does with a rig, last what becomes of the dissertation's claims
 demo: $(VENV)/demo ## predict the reference rig and judge the dissertation's claims; report and figures go to out/
@@ -30,10 +30,18 @@ app: $(VENV)/app ## open the workbench in the browser
 browser: ## install Debian's Chromium, in which the pages are tested
 	apt-get install --no-install-recommends -y chromium
 
-test: $(VENV)/test ## lint and run every test, of types too
+test: $(VENV)/test ## check style and run the daily tests, in ten minutes
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(TEST)
+	$(TEST) --tier daily
+
+test-rest: $(VENV)/test ## run the tests that are not daily, and those of properties with many examples
+	$(TEST) --tier rest
+
+test-all: test-rest test ## run every test
+
+times: $(VENV)/test ## run every test and keep its time, from which its tier follows
+	$(TEST) --renew-times
 
 quick: $(VENV)/test ## check style and what a change most likely breaks, in less than a minute
 	$(BIN)/ruff check .

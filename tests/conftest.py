@@ -1,4 +1,4 @@
-"""Shared settings and fixtures: hypothesis without clocks, and a copy of the package that a test may extend."""
+"""Shared settings and fixtures, and a copy of the package that a test may extend."""
 
 import gc
 import os
@@ -8,22 +8,17 @@ from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, settings
-from tests import skips
 
-settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
-settings.load_profile("patient")
+pytest_plugins = ("tests.skips", "tests.tiers")  # skips counted, and tiers by measured times
 
 os.environ["COLUMNS"] = "500"  # so that lines of the program are not wrapped, whatever terminal runs the tests
 
 _OBJECTS = 20_000  # allocated between two collections of garbage; Python's 700 take a twentieth of the time
 
 
-def pytest_configure(config: pytest.Config) -> None:
-    """Count the tests that skip, where a run allows few; leave garbage until the tests are collected."""
+def pytest_configure() -> None:
+    """Leave garbage until the tests are collected."""
     gc.disable()
-    if not config.pluginmanager.is_registered(skips):
-        config.pluginmanager.register(skips)
 
 
 def pytest_collection_finish() -> None:
