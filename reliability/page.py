@@ -11,7 +11,7 @@ PAGE = DATA.with_suffix(".md")
 _HEAD = """# Reliability
 
 What was done to the program to make it fail, how often, and what was lost. Every trial has a seed. `make reliability`
-repeats all of them on two cores, continues where it was stopped, and writes this page; `make test` runs the first
+repeats all of them on two cores, continues where it was stopped, and writes this page; `make test-all` runs the first
 trials of each study. One study alone: `python -m reliability NAME`.
 
 """

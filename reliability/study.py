@@ -43,13 +43,13 @@ class Study:
     trials : int
         Trials of the full study.
     sample : int
-        Trials in `make test`: seeds 0 to sample - 1, a few seconds in all.
+        Trials in `make test-all`: seeds 0 to sample - 1, a few seconds in all.
     trial : callable
         Record of the trial with a seed. An exception is a failed trial, which no study may have.
     measures : callable
         Measures from the records of all trials.
     sample_measures : callable, optional
-        Measures to hold in `make test`, where bars of the full count would fail by chance; `measures` by default.
+        Measures to hold in `make test-all`, where bars of the full count would fail by chance; `measures` by default.
     """
 
     title: str

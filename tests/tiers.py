@@ -1,15 +1,15 @@
 """Tiers of the tests, by their measured times: ``--tier daily`` for `make test`, ``--tier rest`` for all others.
 
-A test that costs little is daily, and of each function the quickest case that costs no more than a few seconds. A time
-is that of the test and its share of the fixtures that a file, or a run, makes once. Times are kept in times.json, which
-``make times`` renews; a test that is not listed there is quick. Where both tiers run, tests of properties run in both:
-with few examples daily, with many in the rest.
+A test that costs little is daily, as far as the cases of a function together do; so is the quickest case of each
+function and of each file that takes no more than some seconds. A time is that of the test and its share of the
+fixtures that a file, or a run, makes once. Times are kept in times.json, which ``make times`` renews; a test that is
+not listed there is quick. Tests of properties run in both tiers: with few examples daily, with many in the rest.
 """
 
 import json
 import time
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,10 +17,11 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 TIMES = Path(__file__).with_name("times.json")
-MOST = 1.0  # s, of a daily test
-MOST_OF_A_FUNCTION = 4.0  # s, of the quickest case of a function whose cases all cost more than MOST
-MOST_OF_A_FILE = 10.0  # s, of the quickest test of a file whose tests all cost more than that
-_LISTED = 0.2  # s, below which a test or a fixture is not listed
+MAX = 1.0  # s, of a daily test
+MAX_OF_A_FUNCTION = 20.0  # s, of the daily cases of a function together
+MAX_OF_THE_QUICKEST = 4.0  # s, of the quickest case of a function, which is daily even beyond MAX
+MAX_OF_A_FILE = 10.0  # s, of the quickest test of a file that has no other daily one
+_LISTED = 0.1  # s, below which a test or a fixture is not listed
 _SHARED = ("class", "module", "package", "session")  # scopes of fixtures
 
 SELECTED = pytest.StashKey[list[pytest.Item]]()
@@ -33,10 +34,11 @@ for _name, _examples in (("daily", 20), ("wide", 100)):
     )
 
 
-def examples(number: int) -> settings:
+def examples(number: int, **other: Any) -> settings:
     """Settings of a test of a property that needs another number of examples than most; daily at most 20."""
     daily = settings.get_profile("daily").max_examples
-    return settings(max_examples=number if settings.get_current_profile_name() == "wide" else min(number, daily))
+    wide = settings.get_current_profile_name() == "wide"
+    return settings(max_examples=number if wide else min(number, daily), **other)
 
 
 # -- selection
@@ -101,16 +103,27 @@ def _shared(item: pytest.Item, listed: Iterable[str]) -> Iterator[tuple[str, str
 
 def daily_tests(costs: Mapping[str, float]) -> set[str]:
     """Names of the daily tests among all."""
-    daily = {name for name, cost in costs.items() if cost <= MOST}
-    for most, group in ((MOST_OF_A_FUNCTION, _function), (MOST_OF_A_FILE, _file)):
-        cases: dict[str, list[str]] = defaultdict(list)
-        for name in costs:
-            cases[group(name)].append(name)
-        for names in cases.values():
-            quickest = min(names, key=lambda name: costs[name])
-            if costs[quickest] <= most and daily.isdisjoint(names):
-                daily.add(quickest)
+    daily: set[str] = set()
+    for cases in _grouped(costs, _function).values():
+        total = 0.0
+        for name in cases:
+            total += costs[name]
+            if total <= MAX_OF_A_FUNCTION and costs[name] <= MAX:
+                daily.add(name)
+        if costs[cases[0]] <= MAX_OF_THE_QUICKEST:
+            daily.add(cases[0])
+    for tests in _grouped(costs, _file).values():
+        if daily.isdisjoint(tests) and costs[tests[0]] <= MAX_OF_A_FILE:
+            daily.add(tests[0])
     return daily
+
+
+def _grouped(costs: Mapping[str, float], group: Callable[[str], str]) -> dict[str, list[str]]:
+    """Names of tests by what they have in common, the quickest first."""
+    found: dict[str, list[str]] = defaultdict(list)
+    for name in sorted(costs, key=lambda name: costs[name]):
+        found[group(name)].append(name)
+    return found
 
 
 def _function(name: str) -> str:
@@ -133,9 +146,10 @@ class Measured:
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Add a phase of a test; what it waited for a shared fixture is the fixture's."""
-        shared = [each for name, each in report.user_properties if name == "fixture"] if report.when == "setup" else []
+        found: list[Any] = report.user_properties if report.when == "setup" else []
+        shared: list[tuple[str, float]] = [each for name, each in found if name == "fixture"]
         for name, seconds in shared:
-            self.fixtures[str(name)].append(seconds)
+            self.fixtures[name].append(seconds)
         self.tests[report.nodeid] += report.duration - sum(seconds for _, seconds in shared)
 
     def by_room(self) -> dict[str, float]:

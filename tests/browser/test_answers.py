@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
+from tests.tiers import examples
 
 import sonolube as sl
 from sonolube.browser.answers import answered, offered_tasks
@@ -94,7 +95,7 @@ ODD = ["-0", "1e999 V", "\u202e28 V", "<img onerror=x>", "9" * 10_000, "../../x"
 
 
 @given(text=st.one_of(st.text(max_size=40), st.sampled_from(ODD)))
-@settings(max_examples=60, deadline=None)
+@examples(60)
 def test_whatever_is_typed_is_answered_or_refused_in_one_line(text: str) -> None:
     changes = {"drive.voltage_peak_to_peak": text}
     status, body = reply("rig", {"rig": {"name": "tribometer", "changes": changes}}, NOWHERE)

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx
+from tests.tiers import examples
 
 import sonolube as sl
 from sonolube.browser.answers import answered, offered_task
@@ -120,7 +121,7 @@ damaged = st.builds(lambda at, by: STEP[:at] + by + STEP[at:], st.integers(0, 12
 
 
 @given(st.one_of(st.binary(max_size=200), damaged))
-@settings(max_examples=4, deadline=None)
+@examples(4)
 def test_a_damaged_step_file_is_refused_in_one_line_without_a_folder(content: bytes) -> None:
     file = {"name": "own.step", "content": base64.b64encode(content).decode()}
     with pytest.raises(SonolubeError) as refused:

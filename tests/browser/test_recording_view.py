@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx, raises
+from tests.tiers import examples
 
 import sonolube as sl
 from sonolube.browser.answers import answer_object
@@ -60,7 +61,7 @@ def test_a_recording_is_described_once_and_kept_beside_its_upload(long: dict[str
     assert file_view({"file": long}, places) == view
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @given(ends=st.tuples(st.floats(-5, 55), st.floats(-5, 55)), points=st.integers(1, 9000))
 def test_every_view_has_the_extremes_of_its_samples(
     ends: tuple[float, float], points: int, long: dict[str, str], places: Places
@@ -133,7 +134,7 @@ def test_files_that_are_not_here_are_refused(payload: dict[str, Any], places: Pl
             view(payload, places)
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @given(
     content=st.one_of(st.binary(min_size=1, max_size=400), st.text(min_size=1, max_size=200).map(str.encode)),
     name=st.sampled_from(["a.csv", "a.tdms", "a.mat", "a.h5", "a.npy", "a.opd", "a.s1p", "a.lvm", "a.x3p", "a"]),
@@ -245,7 +246,7 @@ anything = st.recursive(
 )
 
 
-@settings(max_examples=100, deadline=None)
+@examples(100)
 @given(results=anything)
 def test_any_json_is_taken_or_refused(results: Any, places: Places) -> None:
     for view, payload in (

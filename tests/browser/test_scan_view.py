@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings, strategies as st
+from hypothesis import HealthCheck, given, strategies as st
 from tests.browser.scans import GROOVE_DEPTH, GROOVE_WIDTH, SPACING, groove_heights, write_groove
+from tests.tiers import examples
 
 from sonolube.browser.places import Places
 from sonolube.browser.scan_view import scan_view, section_view
@@ -151,7 +152,7 @@ STARTS = (
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # files left open by readers of others
 @given(content=st.binary(max_size=400), ending=st.sampled_from(ENDINGS), start=st.sampled_from(STARTS))
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@examples(60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_bad_files_get_one_line_without_the_folders_of_the_workbench(
     content: bytes, ending: str, start: bytes, places: Places
 ) -> None:

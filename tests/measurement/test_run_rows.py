@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx
+from tests.tiers import examples
 
 from sonolube.measurement.measured_runs import read_runs
 from sonolube.measurement.run_rows import rows_of_table, run_rows_csv
@@ -15,7 +16,7 @@ rows = st.fixed_dictionaries(
 )
 
 
-@settings(max_examples=40, deadline=None)
+@examples(40)
 @given(given_rows=st.lists(rows, min_size=1, max_size=4))
 def test_rows_are_read_as_they_were_written(given_rows: list[dict[str, float | str]]) -> None:
     import tempfile

@@ -1,7 +1,8 @@
 """Targets that must not be replaced are refused by every command that writes, in one line, before it computes."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import wraps
+from itertools import cycle
 from pathlib import Path
 from typing import Any
 
@@ -32,12 +33,14 @@ TO_A_FILE = [
     if isinstance(kind, OutputFile)
 ]
 TO_A_FOLDER = [name for name in WRITERS if name not in dict(TO_A_FILE)]
-IN_A_FOLDER = [
-    (name, kind)
-    for name in TO_A_FOLDER
-    for kind in KINDS_INSIDE
-    if kind != "link to a pipe" and (INPUT in ARGUMENTS[name] or "input" not in kind)
-]
+READING = [name for name in TO_A_FOLDER if INPUT in ARGUMENTS[name]]
+KINDS = [kind for kind in KINDS_INSIDE if kind != "link to a pipe"]
+
+
+def paired(names: Sequence[str], kinds: Sequence[str]) -> list[tuple[str, str]]:
+    """Every kind with the first command, and each other with one in turn; the study output_targets draws all pairs."""
+    first, *others = names
+    return [*((first, kind) for kind in kinds), *zip(others, cycle(kinds), strict=False)]
 
 
 @pytest.fixture
@@ -77,27 +80,23 @@ def test_every_command_that_writes_is_tried_here() -> None:
 
 
 @mark.usefixtures("desk")
-@mark.parametrize("kind", KINDS_OF_FILE)
-@mark.parametrize(("name", "argument"), TO_A_FILE, ids=[name for name, _ in TO_A_FILE])
-def test_a_file_that_must_not_be_replaced_is_refused(
-    name: str, argument: str, kind: str, capfd: CaptureFixture[str]
-) -> None:
+@mark.parametrize(("name", "kind"), paired(list(dict(TO_A_FILE)), KINDS_OF_FILE))
+def test_a_file_that_must_not_be_replaced_is_refused(name: str, kind: str, capfd: CaptureFixture[str]) -> None:
     target = hostile(kind, Path("target"))
-    option = [] if name in POSITIONAL else [f"--{argument}"]
+    option = [] if name in POSITIONAL else [f"--{dict(TO_A_FILE)[name]}"]
     line = refusal(capfd, *name.split(), *ARGUMENTS[name], *option, str(target))
     assert f"{target}: cannot be written: " in line
 
 
 @mark.usefixtures("desk")
-@mark.parametrize("kind", KINDS_OF_FOLDER)
-@mark.parametrize("name", TO_A_FOLDER)
+@mark.parametrize(("name", "kind"), paired(TO_A_FOLDER, KINDS_OF_FOLDER))
 def test_a_folder_that_is_none_is_refused(name: str, kind: str, capfd: CaptureFixture[str]) -> None:
     target = hostile(kind, Path("target"))
     assert f"{target}: cannot be written: " in refusal(capfd, *name.split(), *ARGUMENTS[name], "--out", str(target))
 
 
 @mark.usefixtures("desk")
-@mark.parametrize(("name", "kind"), IN_A_FOLDER)
+@mark.parametrize(("name", "kind"), paired(READING, KINDS))
 def test_a_file_in_the_folder_that_must_not_be_replaced_is_refused(
     name: str, kind: str, capfd: CaptureFixture[str]
 ) -> None:

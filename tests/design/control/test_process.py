@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx
+from tests.tiers import examples
 
 from sonolube.design.control import PIGains, Process, simc_gains, stability_margins
 
@@ -36,7 +37,7 @@ def test_the_gain_margin_of_a_delayed_integrator_has_its_closed_form(delayed: in
     assert stability_margins(process, simc_gains(process)).gain_margin == approx(expected, rel=1e-5)
 
 
-@settings(max_examples=25, deadline=None)
+@examples(25)
 @given(
     time_constant=st.floats(5e-5, 0.1),
     dead_time=st.floats(0, 3e-3),

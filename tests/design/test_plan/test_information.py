@@ -5,7 +5,8 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
+from tests.tiers import examples
 
 from sonolube.checks import Floats
 from sonolube.design.test_plan.information import ModelOutcomes, best_batch, mutual_information
@@ -96,7 +97,7 @@ def test_equal_closures_cannot_be_told_apart() -> None:
 
 
 @given(weight=st.floats(0.05, 0.95), distance=st.floats(0.0, 40.0))
-@settings(max_examples=20, deadline=None)
+@examples(20)
 def test_information_lies_between_zero_and_the_entropy_of_the_weights(weight: float, distance: float) -> None:
     models = [gaussian([0.0], weight, draws=64), gaussian([0.05 * distance], 1 - weight, draws=64)]
     entropy = -weight * np.log2(weight) - (1 - weight) * np.log2(1 - weight)

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from reliability.hostile_text import HOSTILE
+from tests.tiers import examples
 from tests.work import calls
 
 from sonolube.errors import InvalidInput
@@ -216,7 +217,7 @@ STEPS = st.recursive(
 
 
 @given(steps=st.lists(STEPS, min_size=1, max_size=4))
-@settings(max_examples=60, deadline=None)
+@examples(60)
 def test_any_protocol_reads_back_from_its_own_text(steps: list[dict[str, Any]]) -> None:
     protocol = protocol_from(content(*steps))
     again = protocol_from(tomllib.loads(protocol_text(protocol)))
@@ -225,7 +226,7 @@ def test_any_protocol_reads_back_from_its_own_text(steps: list[dict[str, Any]]) 
 
 
 @given(steps=st.lists(STEPS, min_size=1, max_size=4), count=st.integers(1, 5))
-@settings(max_examples=30, deadline=None)
+@examples(30)
 def test_a_repeat_lasts_as_many_times_as_its_steps(steps: list[dict[str, Any]], count: int) -> None:
     once, often = (
         duration(protocol_from(content(step)))

@@ -5,10 +5,11 @@ from itertools import pairwise
 from threading import Event, Thread
 
 import pytest
-from hypothesis import HealthCheck, given, settings, strategies as st
+from hypothesis import HealthCheck, given, strategies as st
 from pytest import MonkeyPatch, approx, raises
 from tests.laboratory.patience import be_patient, expect_nothing_on_open_line, silence
 from tests.laboratory.scpi_generator import MODULATIONS, Generator, LineServer
+from tests.tiers import examples
 
 from sonolube.errors import MissingPackage
 from sonolube.laboratory import DeviceError, DeviceLost, DriveSetting
@@ -84,7 +85,7 @@ def test_the_output_is_switched_on_last(bench: Bench) -> None:
     assert [line.partition(";")[0] for line in generator.heard] == ["SOUR1:FREQ 22100"]
 
 
-@settings(max_examples=15, deadline=None, suppress_health_check=UNCHECKED)
+@examples(15, suppress_health_check=UNCHECKED)
 @given(several=st.lists(settings_of_drive, min_size=2, max_size=5))
 def test_no_order_of_possible_settings_meets_a_limit_of_the_generator_on_the_way(
     several: list[DriveSetting], bench: Bench

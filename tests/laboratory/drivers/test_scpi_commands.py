@@ -7,10 +7,11 @@ from threading import Event, Thread
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings, strategies as st
+from hypothesis import HealthCheck, given, strategies as st
 from pytest import MonkeyPatch, approx, raises
 from tests.laboratory import strict_instruments
 from tests.laboratory.strict_instruments import RIGOL, SIGLENT, TEKTRONIX, StrictGenerator, StrictLogger
+from tests.tiers import examples
 
 from sonolube.errors import InvalidInput
 from sonolube.laboratory import DeviceError, DeviceLost, DriveSetting, SamplesLost
@@ -103,7 +104,7 @@ possible = st.builds(
 )
 
 
-@settings(max_examples=20, deadline=None, suppress_health_check=UNCHECKED)
+@examples(20, suppress_health_check=UNCHECKED)
 @given(several=st.lists(possible, min_size=2, max_size=5))
 def test_no_order_of_possible_settings_is_beyond_the_limit_on_the_way(
     several: list[DriveSetting], bench: Bench

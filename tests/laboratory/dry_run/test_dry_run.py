@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
+from tests.tiers import examples
 
 from sonolube.charts import draw_chart
 from sonolube.design.control import Amplifier
@@ -63,7 +64,7 @@ def drive(volts: float, frequency: str = "22 kHz") -> dict[str, Any]:
 
 
 @given(volts=st.floats(0.1, 200), frequency=st.floats(10, 1e5), capacitance=st.floats(1e-9, 1e-5))
-@settings(max_examples=50, deadline=None)
+@examples(50)
 def test_a_sine_on_a_capacitance_needs_pi_f_c_u_of_current(volts: float, frequency: float, capacitance: float) -> None:
     load = drive_load(DriveSetting(voltage_peak_to_peak=volts, frequency=frequency), capacitance=capacitance)
     assert load.peak_current == pytest.approx(pi * frequency * capacitance * volts)

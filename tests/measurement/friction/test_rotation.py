@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx, raises
+from tests.tiers import examples
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.friction.rotation import disc_rotation, hall_pulse_times, revolutions_at
@@ -52,7 +53,7 @@ def test_a_magnet_of_reversed_polarity_gives_the_same_pulses() -> None:
 
 
 @given(st.integers(1, 17), st.integers(1, 3), st.floats(0.1, 20))
-@settings(max_examples=60, deadline=None)
+@examples(60)
 def test_missing_pulses_are_interpolated_and_flagged(first: int, lost: int, period: float) -> None:
     every = period * np.arange(22)
     gone = np.arange(first, first + lost)
@@ -71,7 +72,7 @@ def test_a_step_of_speed_is_not_a_missing_pulse() -> None:
 
 
 @given(st.lists(st.floats(0.2, 1.0), min_size=2, max_size=5), st.sets(st.integers(20, 60), max_size=4))
-@settings(max_examples=60, deadline=None)
+@examples(60)
 def test_unequally_spaced_magnets_give_a_constant_speed(gaps: list[float], gone: set[int]) -> None:
     shares = np.array(gaps) / sum(gaps)
     if np.ptp(np.sort(shares)) < 0.05:

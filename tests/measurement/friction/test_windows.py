@@ -4,9 +4,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from nptdms import ChannelObject, TdmsWriter
 from pytest import approx, raises
+from tests.tiers import examples
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.friction.windows import streamed_window_statistics, window_statistics
@@ -30,7 +31,7 @@ def test_a_sine_fluctuates_by_its_amplitude_over_root_two_in_every_window() -> N
 
 
 @given(st.lists(st.floats(-1e3, 1e3) | st.just(np.nan), min_size=2, max_size=200), st.floats(0.1, 30))
-@settings(max_examples=100, deadline=None)
+@examples(100)
 def test_window_statistics_agree_with_numpy(values: list[float], window: float) -> None:
     x = np.array(values)
     if np.isnan(x).all():

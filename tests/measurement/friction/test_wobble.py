@@ -2,8 +2,9 @@
 
 import numpy as np
 import xarray as xr
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx, raises
+from tests.tiers import examples
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.friction.wobble import remove_wobble
@@ -32,7 +33,7 @@ def test_a_known_wobble_is_removed_without_changing_the_rest() -> None:
 
 
 @given(st.floats(0.001, 10), st.floats(-3, 3), st.integers(0, 2**32 - 1))
-@settings(max_examples=40, deadline=None)
+@examples(40)
 def test_gaps_do_not_affect_the_removal(amplitude: float, phase: float, seed: int) -> None:
     turns = np.linspace(0, 23.4, 5000)
     rest = 2.0 - 0.05 * turns

@@ -6,6 +6,7 @@ from unittest.mock import patch
 import numpy as np
 from hypothesis import given, settings, strategies as st
 from pytest import approx, fail, fixture, raises
+from tests.tiers import examples
 
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.execution.compilation import Kernel, few_points
@@ -49,7 +50,7 @@ def output(history: list[float]) -> float:
     return float(preisach_output(PLANE, WEIGHTS, np.array(history))[-1])
 
 
-@settings(max_examples=25, deadline=None)
+@examples(25)
 @given(history=histories)
 def test_the_output_is_the_sum_of_single_relays(history: list[float]) -> None:
     assert output(history) == approx(relays_one_by_one(history), abs=0.02 * WEIGHTS.sum())

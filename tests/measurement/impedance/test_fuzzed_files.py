@@ -7,9 +7,10 @@ from collections import Counter
 from pathlib import Path
 
 import numpy as np
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from pytest import mark
 from reliability.damage import mutated
+from tests.tiers import examples
 
 from sonolube.errors import SonolubeError
 from sonolube.measurement.impedance.spectrum import read_impedance
@@ -58,7 +59,7 @@ def test_a_damaged_impedance_file_is_read_or_refused(suffix: str, tmp_path: Path
     assert counts["refused"] > 0
 
 
-@settings(max_examples=300, deadline=None)
+@examples(300)
 @given(content=st.binary(max_size=300), suffix=st.sampled_from(SUFFIXES))
 def test_any_bytes_are_read_or_refused(content: bytes, suffix: str) -> None:
     with tempfile.TemporaryDirectory() as folder:

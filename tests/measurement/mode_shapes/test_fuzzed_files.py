@@ -7,10 +7,11 @@ from collections import Counter
 from pathlib import Path
 
 import numpy as np
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from pytest import mark
 from reliability.damage import mutated
 from tests.mode_files import frd_text, write_universal_file
+from tests.tiers import examples
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.mode_shapes.formats import UnitSystem, read_mode_shapes
@@ -72,7 +73,7 @@ def test_a_damaged_file_of_modes_is_read_or_refused(suffix: str, tmp_path: Path)
     assert counts["refused"] > 0
 
 
-@settings(max_examples=200, deadline=None)
+@examples(200)
 @given(content=st.binary(max_size=300), head=st.sampled_from([b"", b"    -1\n    55\n", b"    1C\n    2C"]))
 def test_any_bytes_are_read_or_refused_as_modes(content: bytes, head: bytes) -> None:
     with tempfile.TemporaryDirectory() as folder:

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
+from tests.tiers import examples
 
 from sonolube.checks import Floats
 from sonolube.measurement.recordings.dataset import damaged_sample_caveats
@@ -53,7 +54,7 @@ def test_up_to_three_samples_are_damaged_and_more_are_a_signal() -> None:
         assert len(caveats(damaged)) == (count if count <= 3 else 0)
 
 
-@settings(max_examples=50, deadline=None)
+@examples(50)
 @given(st.integers(0, 10_000), st.integers(20, 400))
 def test_gaussian_noise_of_any_length_raises_no_alarm(seed: int, size: int) -> None:
     assert caveats(np.random.default_rng(seed).standard_normal(size)) == ()

@@ -3,9 +3,10 @@
 from itertools import pairwise
 
 import numpy as np
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from numpy.testing import assert_array_equal
 from pytest import raises
+from tests.tiers import examples
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.pyramid import block_sizes, extremes, extremes_of_range
@@ -23,7 +24,7 @@ def ranges(draw: st.DrawFn) -> tuple[np.ndarray, int, int, int]:
     return values, first, draw(st.integers(first + 1, size)), draw(st.integers(3, 400))
 
 
-@settings(max_examples=300, deadline=None)
+@examples(300)
 @given(ranges())
 def test_no_extreme_of_a_range_is_lost_and_each_part_has_those_of_its_samples(
     drawn: tuple[np.ndarray, int, int, int],

@@ -4,9 +4,10 @@ from itertools import permutations
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings, strategies as st
+from hypothesis import assume, given, strategies as st
 from pytest import approx, raises
 from scipy import stats
+from tests.tiers import examples
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.statistics.repeated_tests import compare_means, mean_estimate, ratio_interval
@@ -22,7 +23,7 @@ def test_a_mean_of_three_tests_has_students_interval() -> None:
 
 
 @given(tests, tests)
-@settings(max_examples=150, deadline=None)
+@examples(150)
 def test_welchs_test_agrees_with_scipy(first: list[float], second: list[float]) -> None:
     assume(np.ptp(first) > 0.01 and np.ptp(second) > 0.01)
     found, known = compare_means(first, second), stats.ttest_ind(second, first, equal_var=False)
@@ -33,7 +34,7 @@ def test_welchs_test_agrees_with_scipy(first: list[float], second: list[float]) 
 
 
 @given(tests, tests)
-@settings(max_examples=40, deadline=None)
+@examples(40)
 def test_the_permutation_test_agrees_with_enumeration_of_all_orders(first: list[float], second: list[float]) -> None:
     assume(len(first) + len(second) <= 7)
     observed = abs(np.mean(second) - np.mean(first))

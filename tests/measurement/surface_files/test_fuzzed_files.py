@@ -6,9 +6,10 @@ import warnings
 from collections import Counter
 from pathlib import Path
 
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from pytest import mark
 from reliability.damage import mutated
+from tests.tiers import examples
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.surface_files.reader import read_height_map
@@ -62,14 +63,14 @@ def test_every_small_file_of_the_corpus_is_read_or_refused(suffix: str, tmp_path
     assert "read" in outcomes
 
 
-@settings(max_examples=200, deadline=None)
+@examples(200)
 @given(content=st.binary(max_size=300), suffix=st.sampled_from(SUFFIXES))
 def test_any_bytes_are_read_or_refused_as_a_surface(content: bytes, suffix: str) -> None:
     with tempfile.TemporaryDirectory() as folder:
         outcome(content, Path(folder) / f"input{suffix}")
 
 
-@settings(max_examples=200, deadline=None)
+@examples(200)
 @given(text=st.text(alphabet="0123456789.-+e nai,;#\n\t", max_size=200))
 def test_any_text_is_read_or_refused(text: str) -> None:
     with tempfile.TemporaryDirectory() as folder:

@@ -5,8 +5,9 @@ import struct
 from pathlib import Path
 
 import numpy as np
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx, mark, raises
+from tests.tiers import examples
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.surface_files.binary_formats import NanoFocusNms
@@ -63,7 +64,7 @@ def test_damaged_files_are_refused_with_the_byte(content: bytes, said: str) -> N
     assert str(refused.value).startswith("plate.nms: ")
 
 
-@settings(deadline=None, max_examples=200)
+@examples(200)
 @given(at=st.integers(0, 3467), value=st.binary(min_size=1, max_size=16))
 def test_any_change_of_the_header_is_read_or_refused_in_one_line(at: int, value: bytes) -> None:
     content = bytearray(nms(np.ones((2, 3))))

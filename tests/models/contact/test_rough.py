@@ -7,10 +7,11 @@ from itertools import pairwise
 
 import mpmath
 import numpy as np
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 from pytest import approx, fixture, mark, raises
 from scipy.integrate import quad
+from tests.tiers import examples
 
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.models.contact import (
@@ -144,7 +145,7 @@ def test_bodies_without_yielding_have_the_contact_of_greenwood_and_williamson(as
     assert contact_count(contact, separation=d) == approx(FINE.summit_density * 1e-4 * 17 / 3 * math.exp(-6))
 
 
-@settings(max_examples=25)
+@examples(25)
 @given(load=st.floats(1e-6, 1e3))
 def test_the_separation_at_a_load_carries_that_load(load: float) -> None:
     for law in LAWS:

@@ -34,12 +34,9 @@ print([sum(kernel.stats.cache_misses.values()) for kernel in kernels])
 """
 
 
-@pytest.mark.parametrize(("damping", "stability", "tolerance"), [(0.0, True, 1e-6), (0.5, False, 1e-4)])
-def test_the_caller_compiles_only_the_first_kernel_and_loads_the_others_from_the_cache(
-    tmp_path: Path, damping: float, stability: bool, tolerance: float
-) -> None:
+def test_the_caller_compiles_only_the_first_kernel_and_loads_the_others_from_the_cache(tmp_path: Path) -> None:
     def compiled() -> str:
-        call = CALL.format(damping=damping, stability=stability, tolerance=tolerance)
+        call = CALL.format(damping=0.0, stability=True, tolerance=1e-6)
         command, environment = [sys.executable, "-c", call], os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
         return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout.strip()
 

@@ -3,9 +3,10 @@
 import math
 
 import numpy as np
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx, mark, raises
 from scipy.integrate import quad
+from tests.tiers import examples
 
 from sonolube.errors import InvalidInput
 from sonolube.models.surfaces import (
@@ -103,7 +104,7 @@ def test_a_missing_pixel_removes_only_the_cells_around_it() -> None:
 
 
 @given(factor=st.floats(0.01, 100), shift=st.floats(-1e-3, 1e-3))
-@settings(max_examples=20, deadline=None)
+@examples(20)
 def test_parameters_scale_with_the_heights_and_do_not_depend_on_the_datum(factor: float, shift: float) -> None:
     small = RANDOM.height[:40, :40]
     one, other = height_parameters(surface_of(small)), height_parameters(surface_of(factor * small + shift))
@@ -113,7 +114,7 @@ def test_parameters_scale_with_the_heights_and_do_not_depend_on_the_datum(factor
 
 
 @given(share=st.floats(0.0, 0.9), seed=st.integers(0, 1000))
-@settings(max_examples=20, deadline=None)
+@examples(20)
 def test_pixels_missing_at_random_change_the_deviation_within_its_sampling_error(share: float, seed: int) -> None:
     white = surface_of(np.random.default_rng(seed).standard_normal((200, 200)))
     sparse = holed(white, share=share, seed=seed + 1)

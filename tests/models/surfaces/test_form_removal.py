@@ -3,6 +3,7 @@
 import numpy as np
 from hypothesis import given, settings, strategies as st
 from pytest import approx, mark, raises
+from tests.tiers import examples
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
@@ -27,7 +28,7 @@ def holes(seed: int) -> Floats:
     return np.where(np.random.default_rng(seed).random(X.shape) < 0.3, np.nan, 0.0)
 
 
-@settings(deadline=None)
+@examples(25)
 @given(degree=st.integers(0, 12), seed=st.integers(0, 1000))
 def test_a_polynomial_is_removed_entirely_whatever_pixels_are_missing(degree: int, seed: int) -> None:
     shape = polynomial(degree, seed)

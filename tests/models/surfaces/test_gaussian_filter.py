@@ -3,8 +3,9 @@
 from typing import Any
 
 import numpy as np
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx, mark, raises
+from tests.tiers import examples
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, OutsideRange
@@ -75,7 +76,7 @@ def test_the_second_order_reproduces_a_paraboloid_at_edges_and_missing_pixels(cu
     np.testing.assert_allclose(passed[known], z[known], atol=1e-12 * np.ptp(z))
 
 
-@settings(max_examples=25, deadline=None)
+@examples(25)
 @given(seed=st.integers(0, 999), row=st.integers(0, 23), column=st.integers(0, 29), order=st.sampled_from([0, 2]))
 def test_each_pixel_is_the_weighted_polynomial_fit_around_it(seed: int, row: int, column: int, order: int) -> None:
     z = np.random.default_rng(seed).normal(size=(24, 30)) + np.roll(holes((24, 30)), seed, axis=1)

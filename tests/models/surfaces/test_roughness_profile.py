@@ -3,8 +3,9 @@
 import math
 
 import numpy as np
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx, mark, raises
+from tests.tiers import examples
 
 from sonolube.errors import InvalidInput
 from sonolube.models.surfaces import HeightMap, profile_parameters, profile_statistics
@@ -57,7 +58,7 @@ def test_ripples_below_a_tenth_of_the_maximum_height_make_no_profile_elements() 
 
 
 @given(share=st.floats(0.0, 0.5), seed=st.integers(0, 100))
-@settings(max_examples=15, deadline=None)
+@examples(15)
 def test_missing_points_do_not_change_the_parameters_beyond_sampling_error(share: float, seed: int) -> None:
     height = sine()
     height[np.random.default_rng(seed).random(height.size) < share] = np.nan
@@ -67,7 +68,7 @@ def test_missing_points_do_not_change_the_parameters_beyond_sampling_error(share
 
 
 @given(factor=st.floats(0.01, 100), shift=st.floats(-1e-3, 1e-3))
-@settings(max_examples=15, deadline=None)
+@examples(15)
 def test_parameters_scale_with_the_heights_and_do_not_depend_on_the_datum(factor: float, shift: float) -> None:
     noise = 1e-6 * np.random.default_rng(1).standard_normal(500)
     one = profile_parameters(height=noise, spacing=SPACING)

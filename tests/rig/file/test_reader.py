@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx
+from tests.tiers import examples
 
 from sonolube.errors import InvalidInput
 from sonolube.rig import (
@@ -206,7 +207,7 @@ JSON = st.recursive(
 
 
 @given(data=st.data())
-@settings(max_examples=300, deadline=None)
+@examples(300)
 def test_whatever_stands_in_a_rig_file_gives_a_rig_or_one_clear_line(data: st.DataObject) -> None:
     content = tomllib.loads(TRIBOMETER)
     places: list[tuple[dict[str, Any], str]] = []

@@ -91,8 +91,7 @@ def batch(law: TabulatedGap | ExponentialGap, structure: Structure) -> SteadySta
     return steady_state(structure, law, normal_load=loads, frequency=frequencies, voltage_amplitude=swing)
 
 
-@mark.parametrize("structure", [FLOATING, HELD], ids=["floating", "held"])
-@mark.parametrize("damping", [0.0, 0.2], ids=["elastic", "damped"])
+@mark.parametrize(("structure", "damping"), [(FLOATING, 0.0), (HELD, 0.2)], ids=["floating", "held and damped"])
 def test_a_tabulated_exponential_has_the_steady_states_of_the_exponential_law(
     structure: Structure, damping: float
 ) -> None:

@@ -26,8 +26,7 @@ LAWS: dict[str, GapLaw] = {
 }
 
 
-@pytest.mark.parametrize("damping", [0.0, 0.3])
-@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize(("name", "damping"), list(zip(LAWS, (0.0, 0.3, 0.0, 0.3), strict=True)))
 def test_exponents_are_those_of_the_kernel(name: str, damping: float, monkeypatch: MonkeyPatch) -> None:
     found: list[tuple[Floats, Floats]] = []
 

@@ -15,7 +15,6 @@ from sonolube.models.dynamics import (
     ExponentialGap,
     GapLaw,
     HertzGap,
-    LinearGap,
     Status,
     SteadyStates,
     Structure,
@@ -82,15 +81,12 @@ def check(by_jax: SteadyStates, by_kernels: SteadyStates) -> None:
 @pytest.mark.parametrize(
     ("body", "law", "points", "more"),
     [
-        (TRIBOMETER, ROUGH, (60, 5e3, 1e5), {}),
         (grounded(), ROUGH, (60, 5e3, 1e5), {"voltage_offset": 5.0}),
-        (TRIBOMETER, replace(ROUGH, force_damping=0.2), (60, 15e3, 30e3), {}),
         (TRIBOMETER, HertzGap(tip_radius=2e-3, effective_modulus=70e9), (8, 15e3, 30e3), {}),
-        (TRIBOMETER, LinearGap(normal_stiffness=5e6), (8, 15e3, 30e3), {"stability": False}),
         (TRIBOMETER, TABLE, (60, 15e3, 30e3), {}),
         (TRIBOMETER, ROUGH, (8, 2e3, 6e3), {"upper_branch": True}),
     ],
-    ids=["exponential", "held by a spring", "damped", "sphere", "spring", "table", "slow and multistable"],
+    ids=["held by a spring", "sphere", "table", "slow and multistable"],
 )
 def test_steady_states_by_jax_are_those_of_the_compiled_kernels(
     body: Structure, law: GapLaw, points: tuple[int, float, float], more: dict[str, Any]

@@ -92,5 +92,5 @@ def test_a_coarse_mesh_of_a_slender_bar_has_no_tangled_element_at_any_order() ->
     # Straightening folds a neighbour here, again and again, before all elements are right.
     mesh = generate_mesh(cylinder(radius=0.006, length=0.125), element_size=0.02)
     media = {"cylinder": isotropic_medium(youngs_modulus=200e9, poisson_ratio=0.3, density=7900.0)}
-    for order in (2, 3, 4, 5):
+    for order in (2, 5):
         assert assemble_matrices(Model(mesh=change_order(mesh, order=order), media=media)).mass.sum() > 0

@@ -37,7 +37,7 @@ def sine(amplitude: float) -> ContactMotion:
     )
 
 
-@pytest.mark.parametrize(("fraction", "phase", "speed"), [(0.0, 0.0, 0.03), (0.3, 0.7, 0.05), (0.5, -1.0, 0.2)])
+@pytest.mark.parametrize(("fraction", "phase", "speed"), [(0.0, 0.0, 0.03), (0.5, -1.0, 0.2)])
 def test_the_mean_of_the_steady_period_is_that_of_a_long_time_integration(
     fraction: float, phase: float, speed: float
 ) -> None:

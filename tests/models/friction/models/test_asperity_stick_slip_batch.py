@@ -4,9 +4,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx, raises
 from scipy.special import i0e
+from tests.tiers import examples
 
 from sonolube.errors import InvalidInput
 from sonolube.models.contact import (
@@ -80,7 +81,7 @@ def test_a_gap_about_a_wider_mean_scales_friction_as_it_scales_the_normal_force(
     assert balanced[-1] == 1.0
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @given(log_beta=st.floats(-7, 5), log_v=st.floats(-12, 1))
 def test_a_sine_has_the_closed_form_ratio(log_beta: float, log_v: float) -> None:
     amplitude = np.exp(log_beta) * DECAY_LENGTH
@@ -126,7 +127,7 @@ def test_a_motion_with_harmonics_has_the_ratio_of_elements_integrated_in_time(ha
     assert ratios(amplitudes, speeds) == approx(expected, abs=3e-5 + SINE_TOLERANCE * (abs(amplitudes[1]) < 1e-9))
 
 
-@settings(max_examples=40, deadline=None)
+@examples(40)
 @given(fraction=st.floats(1e-5, 0.03), lag=st.floats(-np.pi, np.pi), speed=st.floats(2e-3, 0.6))
 def test_harmonics_change_friction_by_no_more_than_they_change_the_gap(
     fraction: float, lag: float, speed: float

@@ -4,10 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx
 from scipy.special import ellipe, ellipk
 from tests.models.friction.models.test_models import CONTACT
+from tests.tiers import examples
 
 from sonolube.checks import Floats
 from sonolube.models.contact import ContactMotion, normal_force, separation, sinusoidal_motion
@@ -80,7 +81,7 @@ def test_the_quadrature_agrees_with_the_closed_form_that_it_becomes() -> None:
     assert ratio(nearly) == approx(ratio(straight), abs=1e-5)
 
 
-@settings(max_examples=40, deadline=None)
+@examples(40)
 @given(angle=st.floats(0, np.pi / 2), size=st.floats(0.01, 3), lag=st.floats(-np.pi, np.pi), second=st.floats(0, 2))
 def test_signs_and_mirror_images_change_nothing_and_friction_brakes(
     angle: float, size: float, lag: float, second: float
@@ -92,7 +93,7 @@ def test_signs_and_mirror_images_change_nothing_and_friction_brakes(
     assert np.all((found > 0) & (found <= 1 + 1e-9))
 
 
-@settings(max_examples=25, deadline=None)
+@examples(25)
 @given(angle=st.floats(0, np.pi), size=st.floats(0.0, 3), part=st.floats(0, 1.5), lag=st.floats(-np.pi, np.pi))
 def test_the_mean_power_of_friction_is_never_negative(angle: float, size: float, part: float, lag: float) -> None:
     along, across, normal = size * np.cos(angle), size * np.sin(angle), part

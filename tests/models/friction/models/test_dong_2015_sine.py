@@ -3,10 +3,11 @@
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 from pytest import approx, raises
 from scipy.integrate import quad
+from tests.tiers import examples
 
 from sonolube.errors import InvalidInput, ModelRangeWarning
 from sonolube.models.contact import (
@@ -92,7 +93,7 @@ def test_vibration_halves_the_friction_of_the_poisson_rig(
     assert np.all((reduction > lowest) & (reduction < highest))
 
 
-@settings(max_examples=50)
+@examples(50)
 @given(load=st.floats(1, 300), amplitude=st.floats(0, 5e-6), more=st.floats(1e-9, 5e-6))
 def test_friction_falls_with_the_amplitude(load: float, amplitude: float, more: float) -> None:
     weak, strong = dong_2015_half_period_ratio(
