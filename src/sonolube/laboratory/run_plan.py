@@ -178,11 +178,11 @@ def _faults(
         yield point.step, "speed", turns, f"{place}: needs {wanted}; {motor.name} turns at most at {most}"
     channels, acquisition = devices.channels, devices.acquisition
     missing = [name for name in point.channels if name not in channels]
-    if missing and point.kind == "acquire":
+    if missing and point.begins_recording:
         names = f"channel {missing[0]}" if len(missing) == 1 else f"channels {', '.join(missing)}"
         text = f"{place}: {acquisition.name} has no {names}; it has {', '.join(channels)}"
         yield point.step, "channels", 0.0, text
-    elif point.kind == "acquire" and all(name not in acquisition.channels for name in point.channels):
+    elif point.begins_recording and all(name not in acquisition.channels for name in point.channels):
         yield point.step, "channels", 0.0, f"{place}: records no channel of {acquisition.name}; add one"
 
 
