@@ -3,6 +3,7 @@
 import json
 import sys
 import time
+import traceback
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -13,7 +14,7 @@ from sonolube.browser.kinds import WITH_MODES
 from sonolube.browser.made_by import made_by, marked
 from sonolube.browser.places import Places
 from sonolube.browser.worker import encoded, limit_process
-from sonolube.errors import SonolubeError
+from sonolube.errors import SonolubeError, fault_line
 from sonolube.storage.files import write_atomically
 from sonolube.tasks.task import marks_of
 
@@ -60,10 +61,13 @@ def main(folder: Path) -> None:
             names = write_files(files, folder=folder / "files", line=line)
             more = {"files": names, "made_by": line}
             write_atomically(folder / "result.json", encoded(answer_object(answer) | more).decode())
-    except SonolubeError as failure:
+    except (SonolubeError, OSError) as failure:  # as the terminal does
         record.write("refused", reason=str(failure))
     except MemoryError:
         record.write("failed", reason="does not fit into the 2 GiB of memory of a job; ask for fewer points")
+    except (Exception, SystemExit) as failure:  # whatever a task raises
+        traceback.print_exc(file=sys.stderr)
+        record.write("failed", reason=fault_line(failure))
     else:
         record.write("done")
 
