@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from sonolube.errors import InvalidInput, SeveralFaults
-from sonolube.facts.protocol import Check, Protocol, SetPoint, flattened, protocol_text, step_at
+from sonolube.facts.protocol import Check, Metadata, Protocol, SetPoint, flattened, protocol_text, step_at
 from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting
 from sonolube.laboratory.interlocks import DriveSampling, drive_sampling, interlocks_for, recorded_channels
 from sonolube.laboratory.records import UNRESOLVED, RunRecorder, new_run
@@ -186,7 +186,8 @@ def _faults(
         yield point.step, "channels", 0.0, f"{place}: records no channel of {acquisition.name}; add one"
 
 
-_STATED: Final = ("specimen", "operator", "humidity", "calibrated", "block", "run")  # of the metadata of a protocol
+_ELSEWHERE: Final = ("pin_material", "disc_material", "normal_load", "groove_diameter")  # that a rig has too
+_STATED: Final = tuple(name for name in Metadata.model_fields if name not in _ELSEWHERE)
 
 
 @dataclass(frozen=True, kw_only=True)
