@@ -3,9 +3,12 @@
 import warnings
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
-from typing import TypeVar
+from pathlib import Path
+from typing import Final, TypeVar
 
 _Entry = TypeVar("_Entry")
+_PACKAGE: Final = Path(__file__).parent
+_LONGEST: Final = 200  # characters of the text of an exception
 
 
 class SonolubeError(Exception):
@@ -103,6 +106,27 @@ class InconsistentCoupling(ModelRangeWarning):
 
 class GpuUnused(UserWarning):
     """A GPU was requested but the processor was used; the results are the same, the computation slower."""
+
+
+def fault_line(failure: BaseException) -> str:
+    """Line on an exception that no refusal foresees: a fault of the program with its kind and place, to be reported."""
+    text = " ".join(str(failure).split())[:_LONGEST]
+    told = f"{type(failure).__name__} ({text})" if text else type(failure).__name__
+    return (
+        f"a fault of sonolube itself, not of your input: {told}{_place_of(failure)}; please report it with this line"
+        " and what you asked for, by the form Fault on the page of the repository"
+    )
+
+
+def _place_of(failure: BaseException) -> str:
+    """Innermost line of sonolube that an exception has passed."""
+    place, passed = "", failure.__traceback__
+    while passed is not None:
+        path = Path(passed.tb_frame.f_code.co_filename)
+        if path.is_relative_to(_PACKAGE):
+            place = f" in {path.relative_to(_PACKAGE.parent).as_posix()}, line {passed.tb_lineno}"
+        passed = passed.tb_next
+    return place
 
 
 def warn_of_range(message: str, *, stacklevel: int = 2) -> None:

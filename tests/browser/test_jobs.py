@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from sonolube.browser import job as job_process
 from sonolube.browser.jobs import Job, Jobs
 from sonolube.errors import InvalidInput
 
@@ -112,3 +113,27 @@ def test_no_file_beside_those_of_a_job_is_read(jobs: Jobs) -> None:
     for name in ("../request.json", "/etc/passwd", "..", "nothing.txt"):
         with pytest.raises(InvalidInput, match="has no file"):
             jobs.file(started.id, name)
+
+
+@pytest.mark.parametrize(
+    "failure", [IndexError("list index out of range"), ZeroDivisionError("float division by zero"), RuntimeError("no")]
+)
+def test_a_job_that_raises_what_no_refusal_foresees_has_failed_by_a_fault_of_sonolube(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], failure: Exception
+) -> None:
+    def failing(*_: object) -> None:
+        raise failure
+
+    monkeypatch.setattr(job_process, "called", failing)
+    monkeypatch.setattr(job_process, "limit_process", lambda **_: None)
+    request = {"task": "contact", "arguments": {"rig": RIG}, "places": NOWHERE}
+    (tmp_path / "request.json").write_text(json.dumps(request), encoding="utf-8")
+    job_process.main(tmp_path)
+    state = json.loads((tmp_path / "state.json").read_text(encoding="utf-8"))
+    kind = f"{type(failure).__name__} ({failure})"
+    assert state["state"] == "failed"
+    assert state["reason"].startswith(
+        f"a fault of sonolube itself, not of your input: {kind} in sonolube/browser/job.py"
+    )
+    assert "memory" not in state["reason"]
+    assert "Traceback" in capsys.readouterr().err

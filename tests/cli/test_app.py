@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from sonolube.cli import app, main
 from sonolube.cli.app import COMMANDS, Command
 
 ROOT = Path(__file__).parents[2]
@@ -140,3 +141,25 @@ def test_completion_can_be_had_for_every_shell(shell: str) -> None:
     run = installed(_SONOLUBE_COMPLETE=f"source_{shell}")
     assert run.returncode == 0
     assert "_SONOLUBE_COMPLETE" in run.stdout
+
+
+@pytest.mark.parametrize(
+    "failure", [IndexError("list index out of range"), ZeroDivisionError("by zero"), RuntimeError()]
+)
+def test_what_no_refusal_foresees_ends_with_one_line_on_a_fault_of_sonolube_below_its_traceback(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], failure: Exception
+) -> None:
+    def failing() -> None:
+        raise failure
+
+    monkeypatch.setattr(app, "_function", lambda *_: failing)
+    with pytest.raises(SystemExit) as end:
+        main(["materials"])
+    out, err = capsys.readouterr()
+    assert (end.value.code, out) == (70, "")
+    *traceback, line = err.splitlines()
+    kind = type(failure).__name__
+    assert line.startswith(f"sonolube materials: a fault of sonolube itself, not of your input: {kind}")
+    assert " in sonolube/cli/app.py, line " in line
+    assert "please report it" in line
+    assert traceback[0].startswith("Traceback")

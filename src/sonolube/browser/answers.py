@@ -16,7 +16,16 @@ from sonolube.errors import InvalidInput, SeveralFaults, UnknownName
 from sonolube.example_files import example_files
 from sonolube.tasks.answer import Answer, Block, Rows, Table, Verbatim
 from sonolube.tasks.files import NamedBytes, file_path, private_files
-from sonolube.tasks.parameters import DoorParameter, File, KeyValues, Mark, OwnFolder, Parameter, RigParameter
+from sonolube.tasks.parameters import (
+    DeviceParameter,
+    DoorParameter,
+    File,
+    KeyValues,
+    Mark,
+    OwnFolder,
+    Parameter,
+    RigParameter,
+)
 from sonolube.tasks.table import TASKS, Task
 from sonolube.tasks.task import marks_of
 
@@ -27,7 +36,6 @@ if TYPE_CHECKING:
 
 _MODES: Final = "structure.file"  # the entry of a rig that names another file
 _PART: Final = "PART"  # an argument that is the name of a part, or a STEP file
-_DEVICES: Final = ("lab run", "lab hold", "lab check")  # which open a device
 
 
 def offered_tasks() -> tuple[Task, ...]:
@@ -256,9 +264,7 @@ def _required(task: Task) -> list[str]:
 @cache
 def _is_offered(task: Task) -> bool:
     """Whether a task opens no device, and writes no folder that is named as an argument."""
-    if task.name in _DEVICES:
-        return False
-    return not any(isinstance(mark, OwnFolder) for mark in marks_of(task.function).values())
+    return not any(isinstance(mark, OwnFolder | DeviceParameter) for mark in marks_of(task.function).values())
 
 
 def _charted(chart: Any, has_tables: bool) -> dict[str, Any]:

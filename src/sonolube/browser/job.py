@@ -3,17 +3,17 @@
 import json
 import sys
 import time
+import traceback
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sonolube.browser.answers import answer_object, called, given_arguments, offered_task
-from sonolube.browser.kinds import WITH_MODES
 from sonolube.browser.made_by import made_by, marked
 from sonolube.browser.places import Places
 from sonolube.browser.worker import encoded, limit_process
-from sonolube.errors import SonolubeError
+from sonolube.errors import SonolubeError, fault_line
 from sonolube.storage.files import write_atomically
 from sonolube.tasks.task import marks_of
 
@@ -56,21 +56,24 @@ def main(folder: Path) -> None:
             record.of = line.removeprefix("Made by ")
             watch = {"progress": record.progress} if "progress" in marks_of(task.function) else {}
             answer = called(task, given | watch)
-            files = dict(answer.files()) | dict(_page_files(task.name, answer))
+            files = dict(answer.files()) | dict(_page_files(answer))
             names = write_files(files, folder=folder / "files", line=line)
             more = {"files": names, "made_by": line}
             write_atomically(folder / "result.json", encoded(answer_object(answer) | more).decode())
-    except SonolubeError as failure:
+    except (SonolubeError, OSError) as failure:  # as the terminal does
         record.write("refused", reason=str(failure))
     except MemoryError:
         record.write("failed", reason="does not fit into the 2 GiB of memory of a job; ask for fewer points")
+    except (Exception, SystemExit) as failure:  # whatever a task raises
+        traceback.print_exc(file=sys.stderr)
+        record.write("failed", reason=fault_line(failure))
     else:
         record.write("done")
 
 
-def _page_files(task: str, answer: "Answer") -> "Mapping[str, Content]":
+def _page_files(answer: "Answer") -> "Mapping[str, Content]":
     """Files that a page shows beside those of the answer."""
-    if task not in WITH_MODES:
+    if not hasattr(answer, "surface_modes"):
         return {}
     from sonolube.browser.mode_view import mode_files
 

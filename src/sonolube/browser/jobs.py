@@ -21,7 +21,12 @@ KEPT_DAYS: Final = 30
 """Days after which a finished job is deleted."""
 
 _GRACE: Final = 0.5  # seconds between the request to end and the end by force
-_ENDED: Final = ("done", "refused", "failed", "cancelled", "interrupted")
+ACTIVE: Final = ("waiting", "running", "running elsewhere")
+"""States of a job that has not ended."""
+
+ENDED: Final = ("done", "refused", "failed", "cancelled", "interrupted")
+"""States of a job that has."""
+
 _REQUEST, _STATE, _RESULT = "request.json", "state.json", "result.json"
 
 
@@ -43,7 +48,7 @@ class Job:
     created : float
         Time of day in seconds since 1970.
     state : str
-        "waiting", "running", "running elsewhere", "done", "refused", "failed", "cancelled" or "interrupted".
+        Of `ACTIVE` or `ENDED`.
     stage : str
         What is done now.
     done, total : int
@@ -116,7 +121,7 @@ class Jobs:
             known["state"] = "waiting"
         elif name in self._running:
             known["state"] = "running"
-        elif known.get("state") not in _ENDED:
+        elif known.get("state") not in ENDED:
             known["state"] = "running elsewhere" if self._is_of_another(request.get("owner")) else "interrupted"
         about = {key: request[key] for key in ("task", "label", "created")}
         return Job(id=name, **(about | known))
@@ -191,7 +196,7 @@ class Jobs:
     def _note_end(self, name: str, code: int) -> None:
         """Record the end of a process that did not record it itself."""
         state = self._read(name, _STATE) or {}
-        if state.get("state") not in _ENDED:
+        if state.get("state") not in ENDED:
             limits = "2 GiB of memory, 10 minutes of processor time or 1 GiB of a file"
             self._record(name, state="failed", reason=f"its process ended (code {code}); a job may use {limits}")
 

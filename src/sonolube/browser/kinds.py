@@ -26,9 +26,6 @@ VIEWS: Final = {
 }
 """What pages ask for beside the answers of tasks, each by its name as `/api/{name}`."""
 
-WITH_MODES: Final = ("modes", "horn design", "impedance compute")
-"""Tasks whose jobs keep the modes of a part beside the files of their answers."""
-
 KINDS: VariantTable[Answering] = VariantTable(
     "kind of request",
     {

@@ -7,7 +7,7 @@ from typing import Any, Final
 from starlette.requests import Request
 from starlette.responses import Response
 
-from sonolube.errors import InvalidInput
+from sonolube.errors import InvalidInput, fault_line
 
 JSON: Final = "application/json"
 """Kind of content."""
@@ -20,6 +20,13 @@ async def refused(request: Request, failure: Exception) -> Response:
     del request
     text = str(failure)
     return json_response({"text": text, "faults": [{"key": getattr(failure, "key", ""), "text": text}]}, status=422)
+
+
+async def faulty(request: Request, failure: Exception) -> Response:
+    """Fault of the program as JSON; the server prints its traceback."""
+    del request
+    text = fault_line(failure)
+    return json_response({"text": text, "faults": [{"key": "", "text": text}]}, status=500)
 
 
 async def content_of(request: Request) -> dict[str, Any]:

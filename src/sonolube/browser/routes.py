@@ -18,7 +18,13 @@ from sonolube.browser.jobs import KEPT_DAYS, Jobs
 from sonolube.browser.kinds import VIEWS
 from sonolube.browser.lab.routes import Laboratory
 from sonolube.browser.lab.runner_records import laboratory_folder
-from sonolube.browser.messages import JSON as _JSON, content_of as _content, json_response as _json, refused as _refusal
+from sonolube.browser.messages import (
+    JSON as _JSON,
+    content_of as _content,
+    faulty,
+    json_response as _json,
+    refused as _refusal,
+)
 from sonolube.browser.places import Places
 from sonolube.browser.static_files import static_file
 from sonolube.browser.uploads import Uploads
@@ -84,7 +90,8 @@ class Workbench:
             Route("/static/{name:path}", static_file, methods=["GET"]),
         ]
         middleware = [Middleware(GZipMiddleware, minimum_size=500, compresslevel=4)]
-        return Starlette(routes=routes, middleware=middleware, exception_handlers={SonolubeError: _refusal})
+        told = {SonolubeError: _refusal, Exception: faulty}
+        return Starlette(routes=routes, middleware=middleware, exception_handlers=told)
 
     async def _page(self, request: Request) -> Response:
         """The one page; everything else is in its scripts."""

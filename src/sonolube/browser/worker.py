@@ -20,9 +20,9 @@ from multiprocessing.process import BaseProcess
 from typing import Any, Final
 
 from sonolube.browser.places import OPENED, Places
-from sonolube.errors import SonolubeError
+from sonolube.errors import SonolubeError, fault_line
 
-_BAD_REQUEST, _REFUSED, _FAILED = 400, 422, 500
+_REFUSED, _FAILED = 422, 500
 _GIBIBYTE: Final = 2**30
 
 
@@ -53,9 +53,10 @@ def serve(connection: Connection, folder: str, warm: Connection) -> None:
             request = connection.recv()
         except (EOFError, OSError):
             return
+        answer = reply(*request)
         try:
-            connection.send(reply(*request))
-        except (BrokenPipeError, OSError):
+            connection.send(answer)
+        except OSError:
             return
 
 
@@ -74,14 +75,20 @@ def reply(kind: str, payload: Mapping[str, Any], places: Places) -> tuple[int, b
 
     try:
         return 200, encoded(KINDS[kind](payload, places))
-    except SonolubeError as failure:
+    except (SonolubeError, OSError) as failure:  # as the terminal does
         return _REFUSED, encoded(refusal_object(failure))
     except MemoryError:
-        text = "does not fit into the memory of a worker; ask for fewer points, or use the terminal"
-        return _REFUSED, encoded({"text": text, "faults": [{"key": "", "text": text}]})
-    except (KeyError, TypeError, AttributeError, ValueError) as failure:
+        return _REFUSED, _one_line(
+            "does not fit into the memory of a worker; ask for fewer points, or use the terminal"
+        )
+    except (Exception, SystemExit) as failure:  # whatever a task raises, the worker answers the next request
         traceback.print_exc(file=sys.stderr)
-        return _FAILED, encoded({"text": f"a fault of sonolube: {type(failure).__name__}", "faults": []})
+        return _FAILED, _one_line(fault_line(failure))
+
+
+def _one_line(text: str) -> bytes:
+    """Refusal of a request as a whole."""
+    return encoded({"text": text, "faults": [{"key": "", "text": text}]})
 
 
 def encoded(content: Any) -> bytes:
@@ -132,9 +139,17 @@ class _Worker:
                 return found
             text = f"took longer than {longest:.0f} s; start it as a job, or ask for fewer points"
         except (EOFError, OSError):
-            text = "the process that computed this has ended; ask again, with fewer points if it needs much memory"
+            text = self._ended()
         self.end()
-        return _DIED, json.dumps({"text": text, "faults": [{"key": "", "text": text}]}).encode()
+        return _DIED, _one_line(text)
+
+    def _ended(self) -> str:
+        """Line on the end of the process: a fault of the program where it has ended by itself."""
+        self.process.join(1.0)
+        code = self.process.exitcode
+        if code is None or code < 0:  # a signal, as the system sends where memory runs out
+            return "the process that computed this has ended; ask again, with fewer points if it needs much memory"
+        return f"the process that computed this has ended itself (code {code}), a fault of sonolube; please report it"
 
     def end(self) -> None:
         """End the process."""

@@ -4,6 +4,7 @@ import io
 import os
 import re
 import sys
+import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib import import_module
@@ -14,7 +15,7 @@ from typer.main import get_command
 from sonolube import __version__
 from sonolube.cli.console.figure_style import show_help_literally, with_figure_style
 from sonolube.cli.console.options import with_checked_files
-from sonolube.errors import SeveralFaults, SonolubeError
+from sonolube.errors import SeveralFaults, SonolubeError, fault_line
 from sonolube.execution.threads import threads_running
 from sonolube.tasks.table import LAB, LOOKUP, PREDICT, TASKS, Task, docstring
 from sonolube.text.plain_text import printable
@@ -104,7 +105,7 @@ RENAMED_OPTIONS = {
 """Options of earlier versions by the first word of their command, each with its new name."""
 
 
-_BAD_INPUT, _INTERRUPTED = 2, 130  # exit codes
+_BAD_INPUT, _FAULT, _INTERRUPTED = 2, 70, 130  # exit codes
 _LONGEST = 1200  # characters of a refusal, which may quote the input
 _LONGEST_FAULT = 300  # characters of one fault among several
 _LONGEST_COMMAND = 60  # characters of a name of a command
@@ -142,7 +143,9 @@ def program(arguments: Sequence[str]) -> typer.Typer:
 
 
 def run(arguments: Sequence[str] | None = None) -> None:
-    """Run the program and exit: 0 after success, 1 after files refused, 2 after bad input, 130 after an interruption.
+    """Run the program and exit: 0 after success, 1 after files refused, 2 after bad input.
+
+    After a fault of the program, whose line is the last one below the traceback, 70; after an interruption, 130.
 
     Parameters
     ----------
@@ -173,6 +176,10 @@ def run(arguments: Sequence[str] | None = None) -> None:
         code = _refuse(command, f"does not fit into memory; ask for fewer points: {refusal}")
     except (KeyboardInterrupt, typer.Abort):
         code = _INTERRUPTED
+    except Exception as failure:  # whatever a command raises that no refusal foresees
+        traceback.print_exc(file=sys.stderr)
+        _refuse(command, fault_line(failure))
+        code = _FAULT
     if code == _INTERRUPTED and threads_running():
         sys.stdout.flush()
         os._exit(_INTERRUPTED)

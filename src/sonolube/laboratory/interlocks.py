@@ -116,13 +116,14 @@ def _sampled(points: Sequence[SetPoint]) -> Iterator[tuple[float, SetPoint]]:
         yield rate, point
 
 
-_WATCHED: Final = {  # channels by the limit that they are held to
+_WATCHED: Final[Mapping[str, Sequence[str]]] = {  # channels by the limit that they are held to
+    "duration_maximum": (),  # which the time line is held to
     "voltage_maximum": ("voltage",),
     "current_maximum": ("current", "current_peak", "current_rms"),
     "temperature_maximum": ("temperature",),
     "friction_force_maximum": ("friction_force",),
 }
-_SET_POINTS: Final = ("voltage_maximum",)  # held to by set points alone where no channel measures them
+_SET_POINTS: Final = ("voltage_maximum", "duration_maximum")  # held to by set points where no channel measures them
 _ROUNDING: Final = 1 + 1e-9
 _PEAK_OVER_RMS: Final = 2**0.5  # of a sine
 
@@ -167,7 +168,8 @@ def interlocks_for(
         fewer than five samples a period are taken of it, and no channel measures its peak, or its rms under a sine.
     """
     found, faults = [], []
-    for name, watched in _WATCHED.items():
+    for name in Limits.model_fields:
+        watched = _WATCHED[name]
         limit, present = getattr(limits, name), _watching(channels, watched)
         if limit is None or (not present and name in _SET_POINTS):
             continue

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from sonolube.errors import InvalidInput, SeveralFaults
-from sonolube.facts.protocol import Check, Protocol, SetPoint, flattened, protocol_text, step_at
+from sonolube.facts.protocol import Check, Metadata, Protocol, SetPoint, flattened, protocol_text, step_at
 from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting
 from sonolube.laboratory.interlocks import DriveSampling, drive_sampling, interlocks_for, recorded_channels
 from sonolube.laboratory.records import UNRESOLVED, RunRecorder, new_run
@@ -178,15 +178,16 @@ def _faults(
         yield point.step, "speed", turns, f"{place}: needs {wanted}; {motor.name} turns at most at {most}"
     channels, acquisition = devices.channels, devices.acquisition
     missing = [name for name in point.channels if name not in channels]
-    if missing and point.kind == "acquire":
+    if missing and point.begins_recording:
         names = f"channel {missing[0]}" if len(missing) == 1 else f"channels {', '.join(missing)}"
         text = f"{place}: {acquisition.name} has no {names}; it has {', '.join(channels)}"
         yield point.step, "channels", 0.0, text
-    elif point.kind == "acquire" and all(name not in acquisition.channels for name in point.channels):
+    elif point.begins_recording and all(name not in acquisition.channels for name in point.channels):
         yield point.step, "channels", 0.0, f"{place}: records no channel of {acquisition.name}; add one"
 
 
-_STATED: Final = ("specimen", "operator", "humidity", "calibrated", "block", "run")  # of the metadata of a protocol
+_ELSEWHERE: Final = ("pin_material", "disc_material", "normal_load", "groove_diameter")  # that a rig has too
+_STATED: Final = tuple(name for name in Metadata.model_fields if name not in _ELSEWHERE)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -158,7 +158,7 @@ class _Run(SupervisedRun):
             self._sample_again()
         if isinstance(step, Check):
             self._check(step)
-        if point.kind == "acquire":
+        if point.begins_recording:
             assert point.sample_rate is not None
             self._sampling.record(point.channels, sample_rate=point.sample_rate)
             self._note("acquire", step=point.step, sample_rate=self._sampling.rate)
@@ -178,7 +178,7 @@ class _Run(SupervisedRun):
     def _records_now(self) -> bool:
         """Whether the present set point is within a recording that has begun before it."""
         until = self._point.recorded_until
-        return self._point.kind != "acquire" and until is not None and self._sampling.time < until
+        return not self._point.begins_recording and until is not None and self._sampling.time < until
 
     def _set_outputs(self) -> None:
         """Set motor and drive as the present set point says."""

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from functools import cache
-from typing import Final, Literal
+from typing import Final, Literal, get_args
 
 from sonolube.checks import Floats
 from sonolube.facts.published import si_value
@@ -25,7 +25,7 @@ from sonolube.validation.tribometer import IDENTIFIED, tribometer_stack
 Horn = Literal["aluminium", "steel"]
 """Material of the waveguide of the Poisson-effect tests."""
 
-HORNS: Final[tuple[Horn, ...]] = ("aluminium", "steel")
+HORNS: Final[tuple[Horn, ...]] = get_args(Horn)
 
 STEEL_ON_STEEL_NOTE: Final = (
     f"yield strength of steel on steel not printed, {STEEL_YIELD_STRENGTH / 1e6:g} MPa implied by D 3.1.4,"

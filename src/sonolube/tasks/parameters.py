@@ -62,6 +62,14 @@ class File(Parameter):
     """Meaning of an argument that names files that are read."""
 
 
+class DeviceParameter(Parameter):
+    """Meaning of an argument that names devices of a rig, which the task opens."""
+
+
+class DeviceFile(File, DeviceParameter):
+    """Meaning of an argument that names a file of devices, which the task opens."""
+
+
 class KeyValues(Parameter):
     """Meaning of a mapping, of which a terminal takes KEY=VALUE once for each key."""
 

@@ -24,11 +24,13 @@ from sonolube.facts.protocol import (
     protocol_path,
     protocol_steps,
 )
+from sonolube.facts.protocol.step import LANES
 from sonolube.tasks.files import NamedBytes
 from sonolube.text.toml_text import toml_content
 
 _LONGEST: Final = 200_000  # characters of a protocol
 _STARTS: Final = 200  # of one step
+_REPEATS, _OTHERS = "repeat", "steps"  # lanes of steps around others, and of those that set nothing
 
 
 def protocol_view(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
@@ -90,6 +92,7 @@ def _viewed(name: str, text: str, rig: Any, places: Places) -> dict[str, Any]:
         "text": text,
         "steps": _steps(content, points),
         "kinds": list(STEP_KINDS),
+        "lanes": [_REPEATS, _OTHERS, *LANES],
         "limits": [
             _field(each) | {"lower": None, "upper": limits.get(each.name)}
             for each in protocol_fields(content, "limits")
@@ -105,9 +108,11 @@ def _viewed(name: str, text: str, rig: Any, places: Places) -> dict[str, Any]:
 def _steps(content: Mapping[str, Any], points: tuple[SetPoint, ...]) -> list[dict[str, Any]]:
     """Steps with their times by the set points of the protocol."""
     starts, lasts = defaultdict[str, list[float]](list), defaultdict[str, float](float)
+    lanes: dict[str, str] = {}
     before = ""
     for point, following in pairwise(points):
         number = point.step
+        lanes.setdefault(number, next(iter(point.sets), _OTHERS))
         while number:  # of the step and the repeats around it
             if not (number == before or before.startswith(f"{number}.")) or (
                 number == point.step and lasts[number] == 0
@@ -122,8 +127,9 @@ def _steps(content: Mapping[str, Any], points: tuple[SetPoint, ...]) -> list[dic
             "depth": step.depth,
             "kind": step.kind,
             "label": step.kind.replace("_", " "),
+            "lane": lanes.get(step.number, _REPEATS),
             "start": next(iter(starts[step.number]), None),
-            "duration": _duration(step.number, step.kind, points, lasts),
+            "duration": _duration(step.number, points, lasts),
             "starts": starts[step.number][:_STARTS],
             "fields": [_field(each) for each in step.fields],
         }
@@ -131,11 +137,12 @@ def _steps(content: Mapping[str, Any], points: tuple[SetPoint, ...]) -> list[dic
     ]
 
 
-def _duration(number: str, kind: str, points: tuple[SetPoint, ...], lasts: Mapping[str, float]) -> float:
+def _duration(number: str, points: tuple[SetPoint, ...], lasts: Mapping[str, float]) -> float:
     """Time of a step: all repeats of one together; of a recording, how long it goes on. [s]"""
-    if kind != "acquire":
+    recordings = [point for point in points if point.step == number and point.begins_recording]
+    if not recordings:
         return lasts.get(number, 0.0)
-    return sum((point.recorded_until or point.time) - point.time for point in points if point.step == number)
+    return sum((point.recorded_until or point.time) - point.time for point in recordings)
 
 
 def _field(entry: ProtocolField) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from sonolube.browser.lab.live_run import LiveRun
 from sonolube.browser.lab.runner_records import END, REQUEST, RUNNER, write_private
 from sonolube.browser.lab.stop_page import StopServer
 from sonolube.browser.places import Places
-from sonolube.errors import SonolubeError
+from sonolube.errors import SonolubeError, fault_line
 from sonolube.laboratory import RunControl
 from sonolube.operating_system import process_start
 from sonolube.storage.files import locked_folder
@@ -66,7 +66,7 @@ def main(folder: Path) -> None:
         ended = _broken(live, str(failure))
     except BaseException as failure:  # whatever it was, the outputs were switched off on the way
         traceback.print_exc(file=sys.stderr)
-        ended = _broken(live, f"a fault of sonolube: {type(failure).__name__}: {failure}")
+        ended = _broken(live, fault_line(failure))
     live.end(*ended)
     try:
         write_private(folder / END, live.status())

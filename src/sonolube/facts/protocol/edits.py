@@ -10,46 +10,9 @@ from typing import Any, Final
 from pydantic import BaseModel
 
 from sonolube.errors import InvalidInput, entry_named
-from sonolube.facts.protocol.record import (
-    Acquire,
-    Check,
-    Drive,
-    Limits,
-    Metadata,
-    MotorSpeed,
-    Prompt,
-    Repeat,
-    Sweep,
-    VoltageSteps,
-    Wait,
-)
+from sonolube.facts.protocol.record import STEP_CLASSES, Limits, Metadata
 
-_MODELS: Final[Mapping[str, type[BaseModel]]] = MappingProxyType(
-    {
-        each.model_fields["kind"].default: each
-        for each in (Wait, MotorSpeed, Drive, Acquire, VoltageSteps, Sweep, Repeat, Check, Prompt)
-    }
-)
 _TABLES: Final[Mapping[str, type[BaseModel]]] = MappingProxyType({"limits": Limits, "metadata": Metadata})
-_NEW: Final[Mapping[str, Mapping[str, Any]]] = MappingProxyType(
-    {
-        "wait": {"duration": "1 s"},
-        "motor_speed": {"sliding_speed": "20 mm/s"},
-        "drive": {"voltage_peak_to_peak": "0 V"},
-        "acquire": {"channels": ["friction_force"], "sample_rate": "400 Hz", "duration": "1 s"},
-        "voltage_steps": {"voltages": ["0 V"], "step_duration": "1 s", "frequency": "20 kHz"},
-        "sweep": {
-            "first_frequency": "20 kHz",
-            "last_frequency": "21 kHz",
-            "points": 2,
-            "duration": "2 s",
-            "voltage_peak_to_peak": "0 V",
-        },
-        "repeat": {"count": 2, "steps": [{"kind": "wait", "duration": "1 s"}]},
-        "check": {"quantity": "temperature", "highest": "60 degC"},
-        "prompt": {"text": "Say here what the operator is to do."},
-    }
-)
 _NUMBER: Final = re.compile(r"\d{1,5}(?:\.\d{1,5}){0,8}")
 
 
@@ -231,7 +194,7 @@ def _steps(content: Mapping[str, Any], prefix: str) -> Iterator[ProtocolStep]:
     """Steps of a list, with those within them."""
     for number, step in enumerate(content.get("steps", ()), 1):
         place, kind = f"{prefix}{number}", str(step.get("kind", ""))
-        yield ProtocolStep(number=place, kind=kind, fields=tuple(_fields(_MODELS[kind], step, f"steps.{place}")))
+        yield ProtocolStep(number=place, kind=kind, fields=tuple(_fields(STEP_CLASSES[kind], step, f"steps.{place}")))
         yield from _steps(step, f"{place}.")
 
 
@@ -283,7 +246,7 @@ def _place(document: Any, key: str) -> tuple[Any, type[BaseModel] | None, str]:
         step = steps[at]
         if is_of_over and isinstance(step.get("over"), Mapping):
             return step["over"], None, name
-        return step, entry_named(_MODELS, str(step.get("kind")), kind="kind of step"), name
+        return step, entry_named(STEP_CLASSES, str(step.get("kind")), kind="kind of step"), name
     raise InvalidInput(
         f"{key[:80]!r}: no entry of a protocol, such as steps.2.duration or limits.voltage_maximum", key=key
     )
@@ -320,7 +283,7 @@ def _insert(document: Any, wanted: Any) -> None:
     import tomlkit
 
     kind = str(wanted.get("kind", "")) if isinstance(wanted, Mapping) else ""
-    entries = entry_named(_NEW, kind, kind="kind of step")
+    entries = entry_named(STEP_CLASSES, kind, kind="kind of step").example
     steps, at = _step(document, wanted.get("before"), may_follow=True)
     steps.insert(at, _table({"kind": kind, **entries}, tomlkit))
 

@@ -1,7 +1,9 @@
-"""Test protocol: its steps, one record a kind, the limits of the rig, and the specimens."""
+"""Test protocol: its steps, one class a kind and one table of all, the limits of the rig, and the specimens."""
 
 import re
-from typing import Annotated, Any, Final, Literal, Self
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType
+from typing import Annotated, Any, ClassVar, Final, Literal, Self, final, get_args
 
 from pydantic import Field, field_validator, model_validator
 
@@ -21,10 +23,10 @@ from sonolube.facts.protocol.quantity_text import (
     Volts,
     written_out,
 )
-from sonolube.text.units import to_si
+from sonolube.facts.protocol.step import Change, DriveSetPoint, MotorSetPoint, Recording, StepTable, Waveform
+from sonolube.text.units import format_si, to_si
 from sonolube.vocabulary import unit_of
 
-Waveform = Literal["sine", "square", "triangle", "sawtooth"]
 CheckedQuantity = Literal[
     "friction_force", "normal_load", "temperature", "sliding_speed", "rotation_speed", "vibration_amplitude"
 ]
@@ -34,7 +36,8 @@ _LONGEST_TEXT: Final = 2000
 _LONGEST_NAME: Final = 500
 
 
-class Wait(Table):
+@final
+class Wait(StepTable):
     """Keep all set points for a time.
 
     Parameters
@@ -44,12 +47,24 @@ class Wait(Table):
     reason : str
     """
 
+    example: ClassVar[Mapping[str, Any]] = MappingProxyType({"duration": "1 s"})
+
     kind: Literal["wait"] = "wait"
     duration: Seconds
     reason: str = Field(default="", max_length=_LONGEST_TEXT)
 
+    def changes(self) -> Iterator[Change]:
+        """None, for its duration."""
+        yield Change(duration=self.duration)
 
-class MotorSpeed(Table):
+    @property
+    def content(self) -> str:
+        """Reason."""
+        return self.reason
+
+
+@final
+class MotorSpeed(StepTable):
     """Set the speed of the motor, 0 to stop it: of the contact or of the disc.
 
     Parameters
@@ -59,6 +74,8 @@ class MotorSpeed(Table):
     rotation_speed : float or None
         [1/s]
     """
+
+    example: ClassVar[Mapping[str, Any]] = MappingProxyType({"sliding_speed": "20 mm/s"})
 
     kind: Literal["motor_speed"] = "motor_speed"
     sliding_speed: MetresPerSecond | None = None
@@ -70,8 +87,20 @@ class MotorSpeed(Table):
             raise ValueError("needs either sliding_speed or rotation_speed")
         return self
 
+    def changes(self) -> Iterator[Change]:
+        """Speed of the motor, of which the one that is not given is None."""
+        yield Change(motor=MotorSetPoint(sliding_speed=self.sliding_speed, rotation_speed=self.rotation_speed))
 
-class Drive(Table):
+    def at_conditions(self, *, normal_load: float, sliding_speed: float) -> Self:
+        """Same step at another speed; one that stops the motor as it is."""
+        del normal_load
+        if not (self.sliding_speed or self.rotation_speed):
+            return self
+        return self.model_copy(update={"sliding_speed": sliding_speed, "rotation_speed": None})
+
+
+@final
+class Drive(StepTable):
     """Set the voltage of the actuator, 0 V to switch it off.
 
     Parameters
@@ -85,6 +114,8 @@ class Drive(Table):
         [V]
     """
 
+    example: ClassVar[Mapping[str, Any]] = MappingProxyType({"voltage_peak_to_peak": "0 V"})
+
     kind: Literal["drive"] = "drive"
     voltage_peak_to_peak: Volts
     frequency: Hertz | None = None
@@ -97,8 +128,19 @@ class Drive(Table):
             raise ValueError("needs a frequency for a voltage above 0 V")
         return self
 
+    def changes(self) -> Iterator[Change]:
+        """Voltage of the actuator."""
+        drive = DriveSetPoint(
+            voltage_peak_to_peak=self.voltage_peak_to_peak,
+            voltage_offset=self.voltage_offset,
+            frequency=self.frequency,
+            waveform=self.waveform,
+        )
+        yield Change(drive=drive)
 
-class Acquire(Table):
+
+@final
+class Acquire(StepTable):
     """Start to record channels; the steps that follow run meanwhile.
 
     Parameters
@@ -110,6 +152,10 @@ class Acquire(Table):
     duration : float
         [s]
     """
+
+    example: ClassVar[Mapping[str, Any]] = MappingProxyType(
+        {"channels": ["friction_force"], "sample_rate": "400 Hz", "duration": "1 s"}
+    )
 
     kind: Literal["acquire"] = "acquire"
     channels: Annotated[tuple[str, ...], Field(strict=False, min_length=1, max_length=64)]
@@ -128,8 +174,13 @@ class Acquire(Table):
             raise ValueError("names a channel twice")
         return channels
 
+    def changes(self) -> Iterator[Change]:
+        """Recording that begins."""
+        yield Change(record=Recording(channels=self.channels, sample_rate=self.sample_rate, duration=self.duration))
 
-class VoltageSteps(Table):
+
+@final
+class VoltageSteps(StepTable):
     """Drive the actuator by several voltages in turn.
 
     Parameters
@@ -145,6 +196,10 @@ class VoltageSteps(Table):
         Whether the offset of each voltage is half of it, so that the actuator is never under tension; else 0 V.
     """
 
+    example: ClassVar[Mapping[str, Any]] = MappingProxyType(
+        {"voltages": ["0 V"], "step_duration": "1 s", "frequency": "20 kHz"}
+    )
+
     kind: Literal["voltage_steps"] = "voltage_steps"
     voltages: Annotated[tuple[Volts, ...], Field(strict=False, min_length=1, max_length=1000)]
     step_duration: Seconds
@@ -152,8 +207,25 @@ class VoltageSteps(Table):
     waveform: Waveform = "sine"
     unipolar: bool = False
 
+    def changes(self) -> Iterator[Change]:
+        """Voltages in turn."""
+        for voltage in self.voltages:
+            drive = DriveSetPoint(
+                voltage_peak_to_peak=voltage,
+                voltage_offset=voltage / 2 if self.unipolar else 0.0,
+                frequency=self.frequency,
+                waveform=self.waveform,
+            )
+            yield Change(duration=self.step_duration, drive=drive)
 
-class Sweep(Table):
+    @property
+    def change_count(self) -> int:
+        """Number of voltages."""
+        return len(self.voltages)
+
+
+@final
+class Sweep(StepTable):
     """Drive the actuator by frequencies that rise or fall from the first to the last in equal steps or ratios.
 
     Parameters
@@ -173,6 +245,16 @@ class Sweep(Table):
     waveform : str
     """
 
+    example: ClassVar[Mapping[str, Any]] = MappingProxyType(
+        {
+            "first_frequency": "20 kHz",
+            "last_frequency": "21 kHz",
+            "points": 2,
+            "duration": "2 s",
+            "voltage_peak_to_peak": "0 V",
+        }
+    )
+
     kind: Literal["sweep"] = "sweep"
     first_frequency: Hertz
     last_frequency: Hertz
@@ -183,8 +265,27 @@ class Sweep(Table):
     voltage_offset: SignedVolts = 0.0
     waveform: Waveform = "sine"
 
+    def changes(self) -> Iterator[Change]:
+        """Frequencies in turn."""
+        first, last = self.first_frequency, self.last_frequency
+        for index in range(self.points):
+            share = index / (self.points - 1)
+            drive = DriveSetPoint(
+                voltage_peak_to_peak=self.voltage_peak_to_peak,
+                voltage_offset=self.voltage_offset,
+                frequency=first * (last / first) ** share if self.scale == "log" else first + (last - first) * share,
+                waveform=self.waveform,
+            )
+            yield Change(duration=self.duration / self.points, drive=drive)
 
-class Check(Table):
+    @property
+    def change_count(self) -> int:
+        """Number of frequencies."""
+        return self.points
+
+
+@final
+class Check(StepTable):
     """Check that a quantity lies within bounds, each text with its unit; the run ends where it does not.
 
     Parameters
@@ -196,6 +297,8 @@ class Check(Table):
     otherwise : str
         What to do where it does not: stop the test, wait until it does, or note it and go on.
     """
+
+    example: ClassVar[Mapping[str, Any]] = MappingProxyType({"quantity": "temperature", "highest": "60 degC"})
 
     kind: Literal["check"] = "check"
     quantity: CheckedQuantity
@@ -220,8 +323,18 @@ class Check(Table):
         high = float("inf") if self.highest is None else to_si(self.highest, unit=unit, name="highest")
         return low, high
 
+    def changes(self) -> Iterator[Change]:
+        """None."""
+        yield Change()
 
-class Prompt(Table):
+    @property
+    def content(self) -> str:
+        """Quantity with its bounds, and what is done otherwise."""
+        return f"{self.quantity} from {self.lowest or 'any'} to {self.highest or 'any'}, else {self.otherwise}"
+
+
+@final
+class Prompt(StepTable):
     """Ask the operator to do something and to confirm it; the clock of the protocol stands still meanwhile.
 
     Parameters
@@ -239,6 +352,8 @@ class Prompt(Table):
         of 30 s of which each goes further. [N]
     """
 
+    example: ClassVar[Mapping[str, Any]] = MappingProxyType({"text": "Say here what the operator is to do."})
+
     kind: Literal["prompt"] = "prompt"
     task: Literal["cleaning", "mounting", "load", "profilometry", "other"] = "other"
     text: str = Field(min_length=1, max_length=_LONGEST_TEXT)
@@ -246,8 +361,26 @@ class Prompt(Table):
     lubricant: str | None = Field(default=None, max_length=_LONGEST_NAME)
     applied_force: Newtons | None = None
 
+    def changes(self) -> Iterator[Change]:
+        """Load and lubricant that the operator changes."""
+        yield Change(normal_load=self.normal_load, lubricant=self.lubricant)
 
-class Repeat(Table):
+    @property
+    def content(self) -> str:
+        """Task and text."""
+        return f"{self.task}: {self.text}"
+
+    def at_conditions(self, *, normal_load: float, sliding_speed: float) -> Self:
+        """Same step with another load and its text, where it has a load."""
+        del sliding_speed
+        if self.normal_load is None:
+            return self
+        text = f"Set a normal load of {format_si(normal_load, 'N')}; bring the pin into contact."
+        return self.model_copy(update={"normal_load": normal_load, "text": text})
+
+
+@final
+class Repeat(StepTable):
     """Make steps several times, or once for each value of variables.
 
     Parameters
@@ -259,6 +392,10 @@ class Repeat(Table):
         Values of variables, which stand as {name} in the texts of the steps: all combinations, those of the last
         variable in turn for each of the one before. Empty in a record that was read, whose steps are written out.
     """
+
+    example: ClassVar[Mapping[str, Any]] = MappingProxyType(
+        {"count": 2, "steps": [{"kind": "wait", "duration": "1 s"}]}
+    )
 
     kind: Literal["repeat"] = "repeat"
     count: int = Field(default=1, ge=1, le=10_000)
@@ -276,15 +413,36 @@ class Repeat(Table):
             raise ValueError("needs count, or over with the values of variables")
         return written_out(content)
 
+    def changes(self) -> Iterator[Change]:
+        """Changes by its steps, as often as it makes them."""
+        for _ in range(self.count):
+            for step in self.steps:
+                yield from step.changes()
+
+    @property
+    def change_count(self) -> int:
+        """Number of changes by its steps, as often as it makes them."""
+        return self.count * sum(step.change_count for step in self.steps)
+
+    def at_conditions(self, *, normal_load: float, sliding_speed: float) -> Self:
+        """Same steps at another load and speed."""
+        steps = (step.at_conditions(normal_load=normal_load, sliding_speed=sliding_speed) for step in self.steps)
+        return self.model_copy(update={"steps": tuple(steps)})
+
 
 Step = Annotated[
     Wait | MotorSpeed | Drive | Acquire | VoltageSteps | Sweep | Repeat | Check | Prompt, Field(discriminator="kind")
 ]
-"""Step of any kind, by its key `kind`."""
+"""Step of any kind, by its key `kind`: the table of the kinds, from which all other lists of them follow."""
 
 Repeat.model_rebuild()
 
-STEP_KINDS: Final = ("wait", "motor_speed", "drive", "acquire", "voltage_steps", "sweep", "repeat", "check", "prompt")
+STEP_CLASSES: Final[Mapping[str, type[StepTable]]] = MappingProxyType(
+    {each.model_fields["kind"].default: each for each in get_args(get_args(Step)[0])}
+)
+"""Classes of the steps by their `kind`."""
+
+STEP_KINDS: Final = tuple(STEP_CLASSES)
 """Values of `kind`."""
 
 

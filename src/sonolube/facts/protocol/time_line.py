@@ -3,21 +3,11 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import Any, Final
+from typing import Final
 
 from sonolube.errors import InvalidInput
-from sonolube.facts.protocol.record import (
-    Acquire,
-    Drive,
-    MotorSpeed,
-    Prompt,
-    Protocol,
-    Repeat,
-    Step,
-    Sweep,
-    VoltageSteps,
-    Wait,
-)
+from sonolube.facts.protocol.record import Protocol, Repeat, Step
+from sonolube.facts.protocol.step import Change, DriveSetPoint, Lane
 from sonolube.text.units import format_si
 
 MAX_SET_POINTS: Final = 10_000
@@ -44,6 +34,8 @@ class SetPoint:
         Place of the step, such as "4" or "4.2" for the second step of a repeat.
     kind : str
         Kind of the step; "end" for the last set point, which switches everything off.
+    sets : tuple of str
+        Set points of which parts of the rig the step has set here: motor, drive, and record where a recording begins.
     sliding_speed : float or None
         None where the speed of the disc is set. [m/s]
     rotation_speed : float or None
@@ -70,6 +62,7 @@ class SetPoint:
     time: float
     step: str
     kind: str
+    sets: tuple[Lane, ...] = ()
     sliding_speed: float | None = 0.0
     rotation_speed: float | None = None
     voltage_peak_to_peak: float = 0.0
@@ -87,16 +80,10 @@ class SetPoint:
         """Greatest magnitude of the voltage, its offset included. [V]"""
         return abs(self.voltage_offset) + self.voltage_peak_to_peak / 2
 
-
-@dataclass(frozen=True, slots=True)
-class _Move:
-    """Change of set points by a step, and how long it lasts."""
-
-    step: str
-    kind: str
-    lasts: float
-    changes: dict[str, Any]
-    records: Acquire | None = None
+    @property
+    def begins_recording(self) -> bool:
+        """Whether a recording begins here."""
+        return "record" in self.sets
 
 
 def flattened(protocol: Protocol) -> tuple[SetPoint, ...]:
@@ -121,21 +108,21 @@ def flattened(protocol: Protocol) -> tuple[SetPoint, ...]:
     now, until = 0.0, 0.0
     state = SetPoint(time=0.0, step="", kind="", normal_load=protocol.metadata.normal_load)
     points = []
-    for move in _moves(protocol.steps, ""):
-        if move.records is not None:
+    for place, step, change in _changes(protocol.steps, ""):
+        if change.record is not None:
             if now < until:
                 start, end = format_si(now, "s"), format_si(until, "s")
-                raise InvalidInput(f"step {move.step}: starts to record at {start}, while another lasts until {end}")
-            until = now + move.records.duration
-            state = replace(state, sample_rate=move.records.sample_rate, recorded_until=until)
+                raise InvalidInput(f"step {place}: starts to record at {start}, while another lasts until {end}")
+            until = now + change.record.duration
+            state = replace(state, recorded_until=until)
         elif state.channels and now >= until:
             state = replace(state, channels=(), sample_rate=None, recorded_until=None)
-        state = replace(state, time=now, step=move.step, kind=move.kind, **move.changes)
+        state = replace(_changed(state, change), time=now, step=place, kind=step.kind, sets=change.sets)
         points.append(state)
-        now += move.lasts
+        now += change.duration
         if abs(now - until) < _ROUNDING * max(1.0, until):
             now = until  # the end of a recording, but for rounding
-    return (*points, SetPoint(time=max(now, until), step="", kind="end"))
+    return (*points, SetPoint(time=max(now, until), step="", kind="end", sets=("motor", "drive")))
 
 
 def step_at(protocol: Protocol, place: str) -> Step:
@@ -175,93 +162,55 @@ def duration(protocol: Protocol) -> float:
 
 def _require_bounded(steps: Sequence[Step]) -> None:
     """Raise where steps, written out, are too many or too deep; without writing them out."""
-    count = _set_points(steps, depth=0)
+    _require_shallow(steps, depth=0)
+    count = sum(step.change_count for step in steps)
     if count > MAX_SET_POINTS:
         raise InvalidInput(f"steps: {count:.6g} set points with all repeats; at most {MAX_SET_POINTS}")
 
 
-def _set_points(steps: Sequence[Step], *, depth: int) -> int:
-    """Number of set points of steps."""
+def _require_shallow(steps: Sequence[Step], *, depth: int) -> None:
+    """Raise where repeats are nested too deep."""
     if depth > _DEEPEST:
         raise InvalidInput(f"steps: repeats are nested more than {_DEEPEST} deep")
-    total = 0
     for step in steps:
-        match step:
-            case Repeat():
-                total += step.count * _set_points(step.steps, depth=depth + 1)
-            case VoltageSteps():
-                total += len(step.voltages)
-            case Sweep():
-                total += step.points
-            case _:
-                total += 1
-    return total
+        if isinstance(step, Repeat):
+            _require_shallow(step.steps, depth=depth + 1)
 
 
-def _moves(steps: Sequence[Step], prefix: str) -> Iterator[_Move]:
-    """Changes of set points by steps, repeats written out."""
+def _changes(steps: Sequence[Step], prefix: str) -> Iterator[tuple[str, Step, Change]]:
+    """Changes of set points by steps with their places, repeats written out."""
     for number, step in enumerate(steps, 1):
         place = f"{prefix}{number}"
-        match step:
-            case Repeat():
-                for _ in range(step.count):
-                    yield from _moves(step.steps, f"{place}.")
-            case VoltageSteps():
-                yield from _voltages(step, place)
-            case Sweep():
-                yield from _frequencies(step, place)
-            case _:
-                yield _single(step, place)
+        if isinstance(step, Repeat):
+            for _ in range(step.count):
+                yield from _changes(step.steps, f"{place}.")
+        else:
+            for change in step.changes():
+                yield place, step, change
 
 
-def _single(step: Step, place: str) -> _Move:
-    """Change of set points by a step that makes one."""
-    match step:
-        case Wait():
-            return _Move(place, step.kind, step.duration, {})
-        case MotorSpeed():
-            speeds = {"sliding_speed": step.sliding_speed, "rotation_speed": step.rotation_speed}
-            return _Move(place, step.kind, 0.0, speeds)
-        case Drive():
-            voltage, frequency = step.voltage_peak_to_peak, step.frequency
-            changes = _driven(step, voltage, step.voltage_offset, frequency if voltage > 0 else None)
-            return _Move(place, step.kind, 0.0, changes)
-        case Acquire():
-            return _Move(place, step.kind, 0.0, {"channels": step.channels}, step)
-        case Prompt():
-            told = {"normal_load": step.normal_load, "lubricant": step.lubricant}
-            return _Move(place, step.kind, 0.0, {name: value for name, value in told.items() if value is not None})
-    return _Move(place, step.kind, 0.0, {})
+def _changed(state: SetPoint, change: Change) -> SetPoint:
+    """Set points after a change."""
+    if (motor := change.motor) is not None:
+        state = replace(state, sliding_speed=motor.sliding_speed, rotation_speed=motor.rotation_speed)
+    if change.drive is not None:
+        state = _driven(state, change.drive)
+    if (record := change.record) is not None:
+        state = replace(state, channels=record.channels, sample_rate=record.sample_rate)
+    if change.normal_load is not None:
+        state = replace(state, normal_load=change.normal_load)
+    return state if change.lubricant is None else replace(state, lubricant=change.lubricant)
 
 
-def _driven(
-    step: Drive | VoltageSteps | Sweep, voltage: float, offset: float, frequency: float | None
-) -> dict[str, Any]:
-    """Changes of the set points of the drive."""
-    return {
-        "voltage_peak_to_peak": voltage,
-        "voltage_offset": offset,
-        "frequency": frequency,
-        "waveform": step.waveform,
-    }
-
-
-def _voltages(step: VoltageSteps, place: str) -> Iterator[_Move]:
-    """Changes of set points by voltages in turn."""
-    for voltage in step.voltages:
-        offset = voltage / 2 if step.unipolar else 0.0
-        changes = _driven(step, voltage, offset, step.frequency if voltage > 0 else None)
-        yield _Move(place, step.kind, step.step_duration, changes)
-
-
-def _frequencies(step: Sweep, place: str) -> Iterator[_Move]:
-    """Changes of set points by frequencies in turn."""
-    first, last = step.first_frequency, step.last_frequency
-    for index in range(step.points):
-        share = index / (step.points - 1)
-        frequency = first * (last / first) ** share if step.scale == "log" else first + (last - first) * share
-        changes = _driven(step, step.voltage_peak_to_peak, step.voltage_offset, frequency)
-        yield _Move(place, step.kind, step.duration / step.points, changes)
+def _driven(state: SetPoint, drive: DriveSetPoint) -> SetPoint:
+    """Set points with others of the drive."""
+    return replace(
+        state,
+        voltage_peak_to_peak=drive.voltage_peak_to_peak,
+        voltage_offset=drive.voltage_offset,
+        frequency=drive.frequency if drive.voltage_peak_to_peak > 0 else None,
+        waveform=drive.waveform,
+    )
 
 
 def protocol_at(protocol: Protocol, *, normal_load: float, sliding_speed: float) -> Protocol:
@@ -279,25 +228,19 @@ def protocol_at(protocol: Protocol, *, normal_load: float, sliding_speed: float)
     -------
     Protocol
         Its title has load and speed behind a comma.
+
+    Raises
+    ------
+    InvalidInput
+        If a step sets load or speed, and its kind has no other ones.
     """
     conditions = f"{format_si(normal_load, 'N')} and {format_si(sliding_speed, 'm/s')}"
     return protocol.model_copy(
         update={
             "title": f"{protocol.title.split(',')[0]}, {conditions}",
             "metadata": protocol.metadata.model_copy(update={"normal_load": normal_load}),
-            "steps": tuple(_step_at(step, normal_load, sliding_speed) for step in protocol.steps),
+            "steps": tuple(
+                step.at_conditions(normal_load=normal_load, sliding_speed=sliding_speed) for step in protocol.steps
+            ),
         }
     )
-
-
-def _step_at(step: Step, load: float, speed: float) -> Step:
-    """Step at another load and speed."""
-    match step:
-        case Repeat():
-            return step.model_copy(update={"steps": tuple(_step_at(each, load, speed) for each in step.steps)})
-        case MotorSpeed() if step.sliding_speed or step.rotation_speed:
-            return step.model_copy(update={"sliding_speed": speed, "rotation_speed": None})
-        case Prompt() if step.normal_load is not None:
-            text = f"Set a normal load of {format_si(load, 'N')}; bring the pin into contact."
-            return step.model_copy(update={"normal_load": load, "text": text})
-    return step

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Final
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.laboratory.catalogue.entry import CatalogueEntry, catalogue_entry
 from sonolube.laboratory.records import RunSummary, run_folders
+from sonolube.laboratory.records.run_folder import DOCUMENTS, PROTOCOL, RUN
 from sonolube.storage.files import is_locked
 from sonolube.storage.growing_files import database, set_database_aside
 from sonolube.text.units import to_si
@@ -243,7 +244,7 @@ def _remove(connection: "Connection", name: str) -> None:
 def _stamp(folder: Path) -> str:
     """Text that changes where the record of a run changes."""
     marks = []
-    for name in ("run.json", "documents.jsonl", "protocol.toml"):
+    for name in (RUN, DOCUMENTS, PROTOCOL):
         try:
             found = (folder / name).stat()
             marks.append(f"{found.st_mtime_ns}-{found.st_size}-{found.st_ino}")
@@ -268,7 +269,7 @@ def _row(name: str, stamp: str, entry: CatalogueEntry) -> tuple[Any, ...]:
 def _entry(parent: Path, text: str) -> CatalogueEntry:
     """Entry of a row."""
     content = json.loads(text)
+    content = {name: tuple(value) if isinstance(value, list) else value for name, value in content.items()}
     summary = {field: content.pop(field) for field in RunSummary.__slots__}
-    summary |= {"folder": parent / summary["folder"], "channels": tuple(summary["channels"])}
-    content |= {name: tuple(content[name]) for name in ("tags", "normal_loads", "sliding_speeds")}
+    summary["folder"] = parent / summary["folder"]
     return CatalogueEntry(**content, summary=RunSummary(**summary), text="")

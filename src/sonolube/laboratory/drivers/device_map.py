@@ -209,8 +209,6 @@ def _read_beside(entry: AcquisitionEntry, key: str, path: Path, files: dict[str,
 BLOCK_DURATION = 0.1
 """Of the first look. [s]"""
 
-_DRIVING = ("drive", "voltage_steps", "sweep")
-
 
 def missing_parts(device_map: DeviceMap) -> tuple[str, ...]:
     """Packages and drivers that a device map needs and that are not installed, each with its remedy.
@@ -258,11 +256,11 @@ def _beyond(device_map: DeviceMap, points: Sequence[SetPoint]) -> Iterator[tuple
     total = device_map.entries.acquisition.total_rate_maximum
     for point in points:
         place, frequency, rate = f"step {point.step}", point.frequency, point.sample_rate
-        if frequency is not None and frequency > highest * (1 + 1e-9) and point.kind in _DRIVING:
+        if frequency is not None and frequency > highest * (1 + 1e-9) and "drive" in point.sets:
             wanted, most = format_si(frequency, "Hz"), format_si(highest, "Hz")
             yield point.step, "frequency", frequency, f"{place}: drives at {wanted}; the drive gives at most {most}"
         count = sum(name not in beside for name in point.channels)
-        if rate is not None and rate * count > total * (1 + 1e-9) and point.kind == "acquire":
+        if rate is not None and rate * count > total * (1 + 1e-9) and point.begins_recording:
             wanted = f"{count} channels at {format_si(rate, 'Hz')}"
             text = f"{place}: records {wanted}; the device takes {format_si(total, 'Hz')} in all"
             yield point.step, "rate", rate, text

@@ -10,17 +10,7 @@ import numpy as np
 
 from sonolube.design.control import Amplifier
 from sonolube.errors import InvalidInput, SonolubeError
-from sonolube.facts.protocol import (
-    PROMPT_DURATIONS,
-    Check,
-    Metadata,
-    Prompt,
-    Protocol,
-    SetPoint,
-    Wait,
-    flattened,
-    step_at,
-)
+from sonolube.facts.protocol import PROMPT_DURATIONS, Metadata, Prompt, Protocol, SetPoint, flattened, step_at
 from sonolube.laboratory.dry_run.record import DryRun, Heating, PlannedPoint, drive_load, heating_over, rubbed_contact
 from sonolube.laboratory.dry_run.report import caveats_of, refusals_of
 from sonolube.laboratory.heating_assumptions import HeatingAssumptions as HeatingAssumptions
@@ -107,17 +97,7 @@ class _Notes:
 
 def _content(protocol: Protocol, point: SetPoint) -> str:
     """Description of a step."""
-    if not point.step:
-        return "motor and drive off"
-    match step_at(protocol, point.step):
-        case Prompt() as prompt:
-            return f"{prompt.task}: {prompt.text}"
-        case Check() as check:
-            low, high = check.lowest or "any", check.highest or "any"
-            return f"{check.quantity} from {low} to {high}, else {check.otherwise}"
-        case Wait() as waiting:
-            return waiting.reason
-    return ""
+    return step_at(protocol, point.step).content if point.step else "motor and drive off"
 
 
 def _sliding_speed(point: SetPoint, metadata: Metadata) -> float | None:

@@ -196,7 +196,7 @@ class DryRun:
     @property
     def recordings(self) -> list[PlannedPoint]:
         """Points at which a recording begins."""
-        return [point for point in self.points if point.setting.kind == "acquire"]
+        return [point for point in self.points if point.setting.begins_recording]
 
     @property
     def samples(self) -> int:

@@ -197,7 +197,7 @@ def _facts(point: PlannedPoint) -> Iterator[str]:
             yield f"{format_si(point.load.peak_current, 'A', digits=3)} peak"
     if point.friction_force:
         yield format_si(point.friction_force, "N", digits=3)
-    if at.channels and at.kind == "acquire" and at.sample_rate is not None:
+    if at.begins_recording and at.sample_rate is not None:
         yield f"{', '.join(at.channels)} at {format_si(at.sample_rate, 'Hz')} for {clock(point.recorded)}"
     if point.content:
         yield point.content

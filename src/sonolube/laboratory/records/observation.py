@@ -23,7 +23,6 @@ MEAN_DURATION: Final = 1.0
 """Time of the samples whose mean is shown. [s]"""
 
 _YOUNG: Final = 10.0  # s, within which a run writes its first document
-_SETTING: Final = ("motor_speed", "drive", "voltage_steps", "sweep", "acquire", "end")
 _SET_POINTS: Final = {"motor": ("rotation_speed", "sliding_speed"), "drive": ("voltage_peak_to_peak", "frequency")}
 
 
@@ -221,7 +220,7 @@ class RunObserver:
             return told.time + max(latest.next_sample - (told.sample or 0), 0) / latest.sample_rate
         if not is_running:
             return told.time
-        following = (point.time for point in self._points if point.time > told.time and point.kind in _SETTING)
+        following = (point.time for point in self._points if point.time > told.time and point.sets)
         return min(told.time + max(now - told.noted, 0.0), next(following, told.time))
 
     def _point(self, at: float) -> SetPoint | None:

@@ -10,7 +10,7 @@ from sonolube.laboratory.drivers import DeviceMap, first_readings, missing_parts
 from sonolube.laboratory.dry_run.report import SAFETY
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 from sonolube.tasks.files import InputFile, file_path
-from sonolube.tasks.parameters import File, Parameter
+from sonolube.tasks.parameters import DeviceFile, Parameter
 from sonolube.tasks.task import shown, task
 from sonolube.text.units import format_si
 
@@ -92,7 +92,7 @@ class CheckedDevices(Answer):
 
 @task
 def check(
-    device_map: Annotated[str | Path, File("Devices of a rig.", "MAP.toml")],
+    device_map: Annotated[str | Path, DeviceFile("Devices of a rig.", "MAP.toml")],
     *,
     protocol: Annotated[
         InputFile | None, Parameter("Such as map_test, or a TOML file: can these devices run it?", "PROTOCOL")

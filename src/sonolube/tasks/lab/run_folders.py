@@ -10,7 +10,7 @@ from sonolube.laboratory.catalogue import FoundRuns, query_from, query_runs, tak
 from sonolube.laboratory.records import Recovery, Run, drop_raw_blocks, export_run, read_run, recover_run, run_folders
 from sonolube.report.results import recorded_runs as results
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, Table, answer
-from sonolube.tasks.parameters import File, KeyValues, OwnFolder, Parameter
+from sonolube.tasks.parameters import DeviceParameter, File, KeyValues, OwnFolder, Parameter
 from sonolube.tasks.task import refuse_unused, shown, task
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ AllRuns = Annotated[str | Path, OwnFolder("Folder of all runs; each has a new on
 Tags = Annotated[Sequence[str], Parameter("For the catalogue; may come again.", "TAG")]
 Seed = Annotated[int, Parameter("Of a virtual tribometer.", lowest=0)]
 RealTime = Annotated[bool, Parameter("Let a virtual test take its time.")]
-Device = Annotated[str | Path, Parameter("What to run on.", "virtual|MAP.toml", option="--device")]
+Device = Annotated[str | Path, DeviceParameter("What to run on.", "virtual|MAP.toml", option="--device")]
 
 
 def facts_of(given: Mapping[str, str | float]) -> dict[str, str | float]:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from sonolube import report as pages
-from sonolube.errors import SonolubeError
+from sonolube.errors import SonolubeError, fault_line
 from sonolube.measurement.measured_files import selected_files
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.report.measured.sheet import Sheet, sheet_blocks, sheets_dataset
@@ -70,7 +70,7 @@ def each_file(
             except Exception as failure:  # a defect at one file must not lose the others
                 if len(paths) == 1:
                     raise
-                refused[with_names_only(str(path))] = with_names_only(_defect(failure))
+                refused[with_names_only(str(path))] = with_names_only(fault_line(failure))
     return sheets, refused
 
 
@@ -90,12 +90,6 @@ def measured(
 def reason_of(failure: SonolubeError) -> str:
     """Reason for which a file could not be measured, in one line."""
     return with_names_only(" ".join(str(failure).split()))
-
-
-def _defect(failure: Exception) -> str:
-    """An unforeseen error as the reason for which a file could not be measured."""
-    text = " ".join(str(failure).split())
-    return f"{type(failure).__name__}: {text}: a defect of sonolube, please report it with the file"
 
 
 def conditions(test_sheet: InputFile | None) -> pages.PinOnDiscSheet | None:

@@ -4,20 +4,17 @@ import {Labelled, refusedBy, TextField} from '../fields.js';
 import {duration} from '../job.js';
 import {Button, capital, classes, Refusal, Select, words} from '../parts.js';
 
-const LANES = {repeat: 'Repeat', steps: 'Steps', motor: 'Motor', drive: 'Drive', record: 'Record'};
-const LANE_OF = {repeat: 'repeat', motor_speed: 'motor', drive: 'drive', voltage_steps: 'drive', sweep: 'drive', acquire: 'record'};
-const laneOf = ({kind}) => LANE_OF[kind] ?? 'steps';
 const [NARROW, WIDE] = [64, 720]; // px of a step without a duration, and of all that have one
 
 /** Duration that a step adds to the test; recordings go on beside the steps that follow. */
-const lasting = (step) => (['repeat', 'record'].includes(laneOf(step)) ? 0 : step.duration);
+const lasting = (step) => (['repeat', 'record'].includes(step.lane) ? 0 : step.duration);
 
 /** Place after the last column of a block: set points last until the next ones, recordings their time, repeats as their steps. */
 function endOf(steps, at) {
-  const [step, lane] = [steps[at], laneOf(steps[at])];
+  const [step, {lane}] = [steps[at], steps[at]];
   if (lane === 'steps') return at + 1;
   const ends = (other) => (lane === 'repeat' ? other.depth <= step.depth
-    : laneOf(other) === lane || (lane === 'record' && (other.start >= step.start + step.duration || other.depth < step.depth)));
+    : other.lane === lane || (lane === 'record' && (other.start >= step.start + step.duration || other.depth < step.depth)));
   const next = steps.findIndex((other, place) => place > at && ends(other));
   return next < 0 ? steps.length : next;
 }
@@ -39,7 +36,7 @@ function Entry({field, wrong, set}) {
 }
 
 /** The time line above what stands in two columns: entries of the chosen step with `start` below them, and `children`. @param {{protocol: Object, edit: (changes: Object) => Promise<boolean>, wrong: {key: string, typed: string, text: string}|null, start: any, children: any}} properties */
-export function TimeLine({protocol: {steps, kinds, limits, metadata}, edit, wrong, start, children}) {
+export function TimeLine({protocol: {steps, kinds, lanes: known, limits, metadata}, edit, wrong, start, children}) {
   const [chosen, choose] = useState('1');
   const [kind, setKind] = useState(kinds[0]);
   const line = useRef(null);
@@ -48,7 +45,7 @@ export function TimeLine({protocol: {steps, kinds, limits, metadata}, edit, wron
   const has = (number) => steps.some((other) => other.number === number);
   const whole = steps.reduce((sum, each) => sum + lasting(each), 0) || 1;
   const widths = steps.map((each) => Math.round(Math.max(NARROW, (WIDE * lasting(each)) / whole)));
-  const lanes = Object.keys(LANES).filter((lane) => lane !== 'repeat' || steps.some((each) => laneOf(each) === lane));
+  const lanes = known.filter((lane) => lane !== 'repeat' || steps.some((each) => each.lane === lane));
 
   const change = async (changes, next = step.number) => await edit(changes) && choose(next);
   const set = (key, typed) => change({[key]: typed});
@@ -67,10 +64,10 @@ export function TimeLine({protocol: {steps, kinds, limits, metadata}, edit, wron
   return html`<div data-test="time-line">
     <div class="lanes table-frame" style=${{gridTemplateColumns: ['max-content', ...widths.map((width) => `${width}px`)].join(' ')}} ref=${line} onKeyDown=${press}
       role="listbox" aria-orientation="horizontal" aria-label="Steps along time">
-      ${lanes.map((lane, row) => html`<span key=${lane} class="lane" style=${{gridRow: row + 1}} aria-hidden="true">${LANES[lane]}</span>`)}
+      ${lanes.map((lane, row) => html`<span key=${lane} class="lane" style=${{gridRow: row + 1}} aria-hidden="true">${capital(lane)}</span>`)}
       ${steps.map((each, place) => html`<button type="button" key=${each.number} role="option" aria-selected=${place === at} tabindex=${place === at ? 0 : -1}
-        class=${classes(`block is-${laneOf(each)}`, {'is-chosen': place === at})} onClick=${() => choose(each.number)} title=${`${words(each.kind)}: ${textOf(each)}`} data-test=${`step:${each.number}`}
-        style=${{gridRow: lanes.indexOf(laneOf(each)) + 1, gridColumn: `${place + 2} / ${endOf(steps, place) + 2}`}}><b>${each.number}</b> ${textOf(each)}</button>`)}
+        class=${classes(`block is-${each.lane}`, {'is-chosen': place === at})} onClick=${() => choose(each.number)} title=${`${words(each.kind)}: ${textOf(each)}`} data-test=${`step:${each.number}`}
+        style=${{gridRow: lanes.indexOf(each.lane) + 1, gridColumn: `${place + 2} / ${endOf(steps, place) + 2}`}}><b>${each.number}</b> ${textOf(each)}</button>`)}
       ${steps.map(({start}, place) => html`<span key=${place} class="lane-time" style=${{gridRow: lanes.length + 1, gridColumn: place + 2}} aria-hidden="true">${duration(start)}</span>`)}
     </div>
     <div class="row">
