@@ -9,21 +9,52 @@ const MOST = 100; // rows shown before all are asked for
 
 /**
  * Table of texts; the first of a row is its head, where `hasRowHeads` is not false.
- * @param {{heads?: string[], rows: string[][], caption?: string, label?: string, test?: string, kind?: string, hasRowHeads?: boolean}} props
+ * @param {{heads?: string[], rows: string[][], caption?: string, label?: string, test?: string, kind?: string,
+ *   hasRowHeads?: boolean}} props
  */
 export function TextTable({heads, rows, caption, label, test, kind = 'table-frame', hasRowHeads = true}) {
   const [isAll, setAll] = useState(false);
   const shown = isAll ? rows : rows.slice(0, MOST);
-  return html`<div class=${kind} tabindex="0" role="group" aria-label=${label ?? caption ?? heads?.filter(Boolean).join(', ') ?? 'Table'}>
+  return html`<div
+    class=${kind}
+    tabindex="0"
+    role="group"
+    aria-label=${label ?? caption ?? heads?.filter(Boolean).join(', ') ?? 'Table'}
+  >
     <table class="table" data-test=${test}>
       ${caption && html`<caption>${caption}</caption>`}
-      ${heads?.some(Boolean) && html`<thead><tr>${heads.map((head, place) => html`<th key=${place} scope="col">
-        ${head || html`<span class="hidden">Quantity</span>`}</th>`)}</tr></thead>`}
-      <tbody>${shown.map((row, at) => html`<tr key=${at}>${row.map((cell, place) => (place === 0 && hasRowHeads
-    ? html`<th key=${place} scope="row">${cell}</th>` : html`<td key=${place}>${cell}</td>`))}</tr>`)}</tbody>
+      ${
+        heads?.some(Boolean) &&
+        html`<thead>
+          <tr>
+            ${heads.map(
+              (head, place) => html`<th key=${place} scope="col">
+                ${head || html`<span class="hidden">Quantity</span>`}
+              </th>`,
+            )}
+          </tr>
+        </thead>`
+      }
+      <tbody>
+        ${shown.map(
+          (row, at) =>
+            html`<tr key=${at}>
+              ${row.map((cell, place) =>
+                place === 0 && hasRowHeads
+                  ? html`<th key=${place} scope="row">${cell}</th>`
+                  : html`<td key=${place}>${cell}</td>`,
+              )}
+            </tr>`,
+        )}
+      </tbody>
     </table>
-    ${shown.length < rows.length && html`<${Button} kind="button is-quiet" onClick=${() => setAll(true)}>
-      Show ${rows.length - shown.length} further rows<//>`}</div>`;
+    ${
+      shown.length < rows.length &&
+      html`<${Button} kind="button is-quiet" onClick=${() => setAll(true)}>
+        Show ${rows.length - shown.length} further rows
+      <//>`
+    }
+  </div>`;
 }
 
 /** Kinds of a block of an answer. */
@@ -35,7 +66,8 @@ const BLOCKS = {
 };
 
 /** All blocks, or some of them. @param {{blocks: Block[]}} properties */
-export const Blocks = ({blocks}) => blocks.map((block, place) => html`<${BLOCKS[block.kind]} key=${place} ...${block} />`);
+export const Blocks = ({blocks}) =>
+  blocks.map((block, place) => html`<${BLOCKS[block.kind]} key=${place} ...${block} />`);
 
 /** Lines of now that were not there when the page last rested; `of` names what is answered at rest. */
 function useChanged(lines, isMoving, of) {
@@ -56,31 +88,68 @@ export function Caveats({answer, isMoving, of, hasFields = true}) {
   const lists = [
     ['Caveats', '', [...leading, ...caveats].map((line) => ({line, shown: line}))],
     ['Refused inputs', '', Object.entries(refusals).map(([name, reason]) => ({shown: `${name}: ${reason}`}))],
-    ['Assumed', ' is-assumed', Object.entries(assumptions).map(([key, reason]) => ({line: `${key}: ${reason}`, shown: html`${hasFields
-      ? html`<${Button} kind="link" onClick=${() => focusField(key)}>${key}<//>` : html`<code>${key}</code>`} ${reason}`}))],
+    [
+      'Assumed',
+      ' is-assumed',
+      Object.entries(assumptions).map(([key, reason]) => ({
+        line: `${key}: ${reason}`,
+        shown: html`
+          ${
+            hasFields
+              ? html`<${Button} kind="link" onClick=${() => focusField(key)}>${key}<//>`
+              : html`<code>${key}</code>`
+          } ${reason}
+        `,
+      })),
+    ],
   ].filter(([, , rows]) => rows.length);
   const changed = useChanged(lists.flatMap(([, , rows]) => rows.map(({line}) => line)).filter(Boolean), isMoving, of);
   if (!lists.length) return html`<p class="hint">No caveats, and nothing assumed.</p>`;
-  return html`<div class="caveats" data-test="caveats">${lists.map(([title, kind, rows]) => html`<h3>${title}</h3>
-    <ul class=${`caveat-list${kind}`}>${rows.map(({line, shown}, at) => html`<li key=${line ?? at} class=${changed.has(line) ? 'is-new' : ''}>
-      ${changed.has(line) && html`<span class="tag is-new">changed</span> `}${shown}</li>`)}</ul>`)}</div>`;
+  return html`<div class="caveats" data-test="caveats">
+    ${lists.map(
+      ([title, kind, rows]) => html`
+        <h3>${title}</h3>
+        <ul class=${`caveat-list${kind}`}>
+          ${rows.map(
+            ({line, shown}, at) => html`<li key=${line ?? at} class=${changed.has(line) ? 'is-new' : ''}>
+              ${changed.has(line) && html`<span class="tag is-new">changed</span> `}
+              ${shown}
+            </li>`,
+          )}
+        </ul>
+      `,
+    )}
+  </div>`;
 }
 
-/** What a failed request shows, beside the last answer; `shown` are keys whose faults stand under their fields. @param {{failure: import('./api.js').Failure, shown?: string[]}} properties */
+/**
+ * What a failed request shows, beside the last answer; `shown` are keys whose faults stand under their fields.
+ * @param {{failure: import('./api.js').Failure, shown?: string[]}} properties
+ */
 export function Failure({failure, shown = []}) {
   if (!failure || failure.kind === 'offline' || failure.kind === 'link') return null;
   const faults = failure.faults.filter((fault) => !shown.includes(fault.key));
   const texts = [...new Set(faults.map((fault) => fault.text || failure.text))];
   const isBelow = !texts.length; // the fields
-  return html`<${Warning} data-test="refused"><strong>${isBelow ? 'Not computed:' : failure.kind === 'refused' ? 'Refused.' : 'Not computed.'}</strong>
+  return html`<${Warning} data-test="refused">
+    <strong>${isBelow ? 'Not computed:' : failure.kind === 'refused' ? 'Refused.' : 'Not computed.'}</strong>
     ${isBelow && ' an entry is refused; the reason stands under its field.'}
     ${texts.map((text) => html`<p key=${text}>${text}</p>`)}
-    ${!isBelow && failure.kind === 'busy' && html`<${Button} onClick=${askAgain}>Ask again<//>`}<//>`;
+    ${!isBelow && failure.kind === 'busy' && html`<${Button} onClick=${askAgain}>Ask again<//>`}
+  <//>`;
 }
 
-/** Note that some entries are refused, while the numbers are those of the last accepted ones. @param {{refused: import('./api.js').Fault[]}} properties */
+/**
+ * Note that some entries are refused, while the numbers are those of the last accepted ones.
+ * @param {{refused: import('./api.js').Fault[]}} properties
+ */
 export function RefusedNote({refused}) {
   if (!refused.length) return null;
-  return html`<p class="notice is-warning" role="status" data-test="left-out">The numbers leave out what is refused:${' '}
-    ${refused.map(({key}, place) => html`${place > 0 && ', '}<${Button} kind="link" key=${key} onClick=${() => focusField(key)}>${key}<//>`)}. They are of the value that was accepted last.</p>`;
+  return html`<p class="notice is-warning" role="status" data-test="left-out">
+    The numbers leave out what is refused:${' '}
+    ${refused.map(
+      ({key}, place) =>
+        html`${place > 0 && ', '}<${Button} kind="link" key=${key} onClick=${() => focusField(key)}>${key}<//>`,
+    )}. They are of the value that was accepted last.
+  </p>`;
 }

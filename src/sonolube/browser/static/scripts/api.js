@@ -1,5 +1,6 @@
 /**
- * Requests of the page: one in flight, of those that wait the latest of each kind next; and whether the workbench answers.
+ * Requests of the page: one in flight, of those that wait the latest of each kind next; and whether the workbench
+ * answers.
  *
  * @typedef {{key: string, text: string}} Fault
  * @typedef {{text: string, faults: Fault[], kind: 'refused'|'busy'|'offline'|'link'}} Failure
@@ -57,7 +58,8 @@ function gone(kind) {
 /**
  * GET, POST or DELETE of an address of the workbench, whatever else is in flight.
  * @param {string} path such as "api/jobs"
- * @param {{method?: string, body?: any, raw?: Blob, signal?: AbortSignal}} [options] a body makes it a POST, of JSON or raw
+ * @param {{method?: string, body?: any, raw?: Blob, signal?: AbortSignal}} [options] a body makes it a POST, of JSON or
+ *   raw
  * @returns {Promise<Reply>}
  */
 export async function ask(path, {method, body, raw, signal} = {}) {
@@ -65,7 +67,9 @@ export async function ask(path, {method, body, raw, signal} = {}) {
   let response;
   try {
     response = await fetch(path, {
-      method: method ?? (raw || json ? 'POST' : 'GET'), signal, body: raw ?? json,
+      method: method ?? (raw || json ? 'POST' : 'GET'),
+      signal,
+      body: raw ?? json,
       headers: {...STATED, ...(json && {'content-type': 'application/json'})},
     });
   } catch (reason) {
@@ -82,7 +86,12 @@ export async function ask(path, {method, body, raw, signal} = {}) {
   return {failure: {kind, text: content.text ?? '', faults: content.faults ?? []}};
 }
 
-/** Answer of a task, such as "measure friction", to arguments by Python's names. @param {string} name @param {object} args @returns {Promise<Reply>} */
+/**
+ * Answer of a task, such as "measure friction", to arguments by Python's names.
+ * @param {string} name
+ * @param {object} args
+ * @returns {Promise<Reply>}
+ */
 export const callTask = (name, args) => ask(taskPath(name), {body: args});
 /** @param {string} name @returns {string} */
 export const taskPath = (name) => `api/tasks/${name.replaceAll(' ', '/')}`;
@@ -109,13 +118,16 @@ export const cancelRequest = () => inFlight?.abort();
  * Do requests one after the other; a newer one of the same slot replaces one that waits, whose reply is then null.
  * @param {string} slot @param {(signal: AbortSignal) => Promise<Reply>} work @returns {Promise<Reply|null>}
  */
-export const inTurn = (slot, work) => new Promise((done) => {
-  waiting.get(slot)?.done(null);
-  waiting.set(slot, {work, done});
-  run();
-});
+export const inTurn = (slot, work) =>
+  new Promise((done) => {
+    waiting.get(slot)?.done(null);
+    waiting.set(slot, {work, done});
+    run();
+  });
 
-/** @type {Map<string, {text: string, reply: Promise<Reply|null>}>} Latest request of each slot, whose reply hooks share. */
+/**
+ * @type {Map<string, {text: string, reply: Promise<Reply|null>}>} Latest request of each slot, whose reply hooks share.
+ */
 const latestOf = new Map();
 
 function shared(slot, text, work) {
@@ -133,7 +145,8 @@ const accepted = new Map();
 const place = (rig, key) => `${rig.text ?? rig.name} ${key}`;
 
 /** Longest of some keys that a sentence names; empty where it names none. */
-const named = (text, keys) => keys.filter((key) => text.includes(`${key}:`)).sort((one, other) => other.length - one.length)[0] ?? '';
+const named = (text, keys) =>
+  keys.filter((key) => text.includes(`${key}:`)).sort((one, other) => other.length - one.length)[0] ?? '';
 
 /**
  * Ask about a rig; refused entries are replaced by what was accepted last, so that the other fields stay live.
@@ -168,20 +181,33 @@ export function useReply(slot, path, body) {
   const text = path === null ? '' : JSON.stringify([path, body, turn]);
   useEffect(() => {
     if (path === null) return;
-    shared(slot, text, (signal) => askWithRig(path, body, signal)).then((reply) => reply && setFound((old) => (reply.content
-      ? {content: reply.content, failure: null, refused: reply.refused ?? [], of: body, text}
-      : {...old, failure: reply.failure, refused: [], text})));
+    shared(slot, text, (signal) => askWithRig(path, body, signal)).then(
+      (reply) =>
+        reply &&
+        setFound((old) =>
+          reply.content
+            ? {content: reply.content, failure: null, refused: reply.refused ?? [], of: body, text}
+            : {...old, failure: reply.failure, refused: [], text},
+        ),
+    );
   }, [text]);
   return {...found, isWaiting: path !== null && found.text !== text};
 }
 
-/** Whether the workbench answers, and how often it came back. @returns {{connection: 'ok'|'offline'|'link', generation: number}} */
+/**
+ * Whether the workbench answers, and how often it came back.
+ * @returns {{connection: 'ok'|'offline'|'link', generation: number}}
+ */
 export function useConnection() {
   useListening(listeners);
   return {connection, generation};
 }
 
-/** Let this page in by a new link, as it was printed, without leaving it; false where it is of another workbench. @param {string} link @returns {Promise<boolean>} */
+/**
+ * Let this page in by a new link, as it was printed, without leaving it; false where it is of another workbench.
+ * @param {string} link
+ * @returns {Promise<boolean>}
+ */
 export async function enter(link) {
   const token = /[?&]token=([\w-]+)/.exec(link)?.[1] ?? link.trim();
   await fetch(`./?token=${encodeURIComponent(token)}`, {headers: STATED}).catch(() => null);
@@ -189,7 +215,11 @@ export async function enter(link) {
   return connection === 'ok';
 }
 
-/** Whether something has been so for a while, such as waiting for an answer, so that what is short does not flicker. @param {boolean} isSo @returns {boolean} */
+/**
+ * Whether something has been so for a while, such as waiting for an answer, so that what is short does not flicker.
+ * @param {boolean} isSo
+ * @returns {boolean}
+ */
 export function useLate(isSo) {
   const [isLate, setLate] = useState(false);
   useEffect(() => {

@@ -11,14 +11,28 @@ const OTHER = {x: 'y', y: 'x'}; // axis
 const placed = (name, lengthwise, crosswise) => (name === 'x' ? [lengthwise, crosswise] : [crosswise, lengthwise]);
 /** Markers of unit size about zero, as paths of SVG. */
 export const MARKERS = [
-  'M-1 0a1 1 0 1 0 2 0a1 1 0 1 0-2 0Z', 'M-.9-.9H.9V.9H-.9Z', 'M0-1.1 1 .9H-1Z', 'M0-1.25 1.25 0 0 1.25-1.25 0Z', 'M0 1.1 1-.9H-1Z',
-  'M-.4-1.2H.4V-.4H1.2V.4H.4V1.2H-.4V.4H-1.2V-.4H-.4Z', 'M-1.1-.6-.6-1.1 0-.5.6-1.1 1.1-.6.5 0 1.1.6.6 1.1 0 .5-.6 1.1-1.1.6-.5 0Z',
-  'M-1.1 0 .9-1V1Z', 'M1.1 0-.9-1V1Z', 'M0-1.4.33-.45 1.33-.43.53.17.82 1.13 0 .56-.82 1.13-.53.17-1.33-.43-.33-.45Z',
+  'M-1 0a1 1 0 1 0 2 0a1 1 0 1 0-2 0Z',
+  'M-.9-.9H.9V.9H-.9Z',
+  'M0-1.1 1 .9H-1Z',
+  'M0-1.25 1.25 0 0 1.25-1.25 0Z',
+  'M0 1.1 1-.9H-1Z',
+  'M-.4-1.2H.4V-.4H1.2V.4H.4V1.2H-.4V.4H-1.2V-.4H-.4Z',
+  'M-1.1-.6-.6-1.1 0-.5.6-1.1 1.1-.6.5 0 1.1.6.6 1.1 0 .5-.6 1.1-1.1.6-.5 0Z',
+  'M-1.1 0 .9-1V1Z',
+  'M1.1 0-.9-1V1Z',
+  'M0-1.4.33-.45 1.33-.43.53.17.82 1.13 0 .56-.82 1.13-.53.17-1.33-.43-.33-.45Z',
 ];
 
-/** Places of values on a canvas and back; `box` in its pixels. @param {Panel} panel @param {object} ranges @param {object} box */
+/**
+ * Places of values on a canvas and back; `box` in its pixels.
+ * @param {Panel} panel
+ * @param {object} ranges
+ * @param {object} box
+ */
 export const mapping = (panel, ranges, box) => ({
-  box, x: along(panel.x, ranges.x, box.left, box.width), y: along(panel.y, ranges.y, box.top + box.height, -box.height),
+  box,
+  x: along(panel.x, ranges.x, box.left, box.width),
+  y: along(panel.y, ranges.y, box.top + box.height, -box.height),
 });
 
 /** Trace a curve, and give its places in pixels; null where it is interrupted. */
@@ -37,8 +51,9 @@ function trace(context, line, map) {
 
 /**
  * Draw the parts of a panel.
- * @param {{map: Object, theme: Object, scale: number, behind: Object[], rule: Object|null, held: number|null, ringed?: {x: number, y: number}}} of
- *   `behind` are kept lines; `held` is where the dragged `rule` stands, null where its data say it; `ringed` is a point that is chosen
+ * @param {{map: Object, theme: Object, scale: number, behind: Object[], rule: Object|null, held: number|null, ringed?:
+ *   {x: number, y: number}}} of `behind` are kept lines; `held` is where the dragged `rule` stands, null where its data
+ *   say it; `ringed` is a point that is chosen
  */
 export function drawParts(context, panel, {map, theme, scale, behind, rule: dragged, held, ringed}) {
   const draw = {line, band, points, rule, zone, bars, note, field: (part) => drawField(context, part, map, scale)};
@@ -53,11 +68,14 @@ export function drawParts(context, panel, {map, theme, scale, behind, rule: drag
     context.restore();
   };
   const kept = behind.map((part, at) => ({...part, dash: at, weight: 0.9, isKept: true}));
-  const order = (part) => (part.isKept ? 2.5 : {zone: 0, field: 1, band: 2, points: part.is_faint ? 1 : 4, note: 5}[part.kind] ?? 3);
-  [...panel.parts, ...kept].sort((one, other) => order(one) - order(other)).forEach((part) => {
-    if (part.kind === 'points' || part.kind === 'note') draw[part.kind](part);
-    else inside(() => draw[part.kind](part));
-  });
+  const order = (part) =>
+    part.isKept ? 2.5 : ({zone: 0, field: 1, band: 2, points: part.is_faint ? 1 : 4, note: 5}[part.kind] ?? 3);
+  [...panel.parts, ...kept]
+    .sort((one, other) => order(one) - order(other))
+    .forEach((part) => {
+      if (part.kind === 'points' || part.kind === 'note') draw[part.kind](part);
+      else inside(() => draw[part.kind](part));
+    });
   if (ringed) {
     context.beginPath();
     context.arc(map.x.to(ringed.x), map.y.to(ringed.y), 2.6 * MARKER * scale, 0, 2 * Math.PI);
@@ -108,7 +126,9 @@ export function drawParts(context, panel, {map, theme, scale, behind, rule: drag
   }
 
   function band(part) {
-    const known = part.x.map((x, at) => at).filter((at) => [part.x, part.low, part.high].every((values) => values[at] !== null));
+    const known = part.x
+      .map((x, at) => at)
+      .filter((at) => [part.x, part.low, part.high].every((values) => values[at] !== null));
     const edge = (values, places) => places.forEach((at) => context.lineTo(map.x.to(part.x[at]), map.y.to(values[at])));
     context.beginPath();
     for (let first = 0, at = 1; at <= known.length; at += 1) {
@@ -137,7 +157,10 @@ export function drawParts(context, panel, {map, theme, scale, behind, rule: drag
         bar(errors(part.x_error, at), x, place, 'x', colour);
       });
       context.globalAlpha = part.is_faint ? 0.6 : 1;
-      mark(part.marker, size, place, shade ? css(shade(part.shades[at])) : colour, {isHollow: part.is_hollow, edge: part.is_faint ? colour : shade ? 'white' : theme.surface});
+      mark(part.marker, size, place, shade ? css(shade(part.shades[at])) : colour, {
+        isHollow: part.is_hollow,
+        edge: part.is_faint ? colour : shade ? 'white' : theme.surface,
+      });
       context.globalAlpha = 1;
       if (part.texts?.[at]) write(part.texts[at], place[0] + 7 * scale, place[1], 'left', theme.ink, true);
     });
@@ -165,7 +188,9 @@ export function drawParts(context, panel, {map, theme, scale, behind, rule: drag
   function zone(part) {
     context.globalAlpha = part.opacity;
     context.fillStyle = theme.fill(part.colour);
-    part.first.forEach((first, at) => fill(part.along, [first, part.last[at]].map(map[part.along].to), whole[OTHER[part.along]]));
+    part.first.forEach((first, at) =>
+      fill(part.along, [first, part.last[at]].map(map[part.along].to), whole[OTHER[part.along]]),
+    );
     context.globalAlpha = 1;
   }
 
@@ -175,13 +200,22 @@ export function drawParts(context, panel, {map, theme, scale, behind, rule: drag
     part.places.forEach((place, at) => {
       const length = part.lengths[at];
       if (length === null) return;
-      const [from, to, middle] = [lengthwise.to(Math.max(lengthwise.ends[0], 0)), lengthwise.to(length), across.to(place)];
+      const [from, to, middle] = [
+        lengthwise.to(Math.max(lengthwise.ends[0], 0)),
+        lengthwise.to(length),
+        across.to(place),
+      ];
       context.fillStyle = theme.stroke(part.colour);
       fill(name, [from, to], [place - breadth / 2, place + breadth / 2].map(across.to));
       const lengths = errors(part.error, at);
       bar(lengths, length, placed(name, to, middle), name, theme.ink);
       const end = lengths ? lengthwise.to(length + lengths[1]) : to;
-      if (part.texts?.[at]) write(part.texts[at], ...(name === 'x' ? [end + 4 * scale, middle, 'left'] : [middle, end - 8 * scale, 'center']), theme.ink);
+      if (part.texts?.[at])
+        write(
+          part.texts[at],
+          ...(name === 'x' ? [end + 4 * scale, middle, 'left'] : [middle, end - 8 * scale, 'center']),
+          theme.ink,
+        );
     });
   }
 
@@ -217,7 +251,11 @@ function shadeOf(part, panel) {
 /** Ends of the scale of shaded points. @param {Part} part @returns {number[]} */
 export const ownEnds = (part) => part.scale_ends ?? extent(part.shades);
 
-/** Points and ends of bars of a panel by x, each with its part and number; faint ones only where there are no others. @param {Panel} panel @returns {{part: Part, at: number, x: number, y: number}[]} */
+/**
+ * Points and ends of bars of a panel by x, each with its part and number; faint ones only where there are no others.
+ * @param {Panel} panel
+ * @returns {{part: Part, at: number, x: number, y: number}[]}
+ */
 export function pointsOf(panel) {
   const known = panel.parts.filter((part) => part.kind === 'points' || part.kind === 'bars');
   const shown = (known.every((part) => part.is_faint) ? known : known.filter((part) => !part.is_faint)).map((part) => {
@@ -225,8 +263,10 @@ export function pointsOf(panel) {
     const [x, y] = placed(part.along, part.lengths, part.places);
     return {...part, x, y, texts: []};
   });
-  return shown.flatMap((part) => part.x.map((x, at) => ({part, at, x, y: part.y[at]})))
-    .filter(({x, y}) => x !== null && y !== null).sort((one, other) => one.x - other.x || one.y - other.y);
+  return shown
+    .flatMap((part) => part.x.map((x, at) => ({part, at, x, y: part.y[at]})))
+    .filter(({x, y}) => x !== null && y !== null)
+    .sort((one, other) => one.x - other.x || one.y - other.y);
 }
 
 /** A value with the label of its axis. */
@@ -235,16 +275,21 @@ const said = (axis, value) => `${flat(axis.label)}: ${withUnit(value, axis)}`;
 /** What is said of a point. @param {Panel} panel @param {{part: Part, at: number}} point @returns {string[]} */
 export function pointText(panel, {part, at}) {
   const error = errors(part.y_error, at);
-  const spread = error && (error[0] === error[1] ? ` ± ${short(error[0], 2)}` : ` −${short(error[0], 2)} +${short(error[1], 2)}`);
+  const spread =
+    error && (error[0] === error[1] ? ` ± ${short(error[0], 2)}` : ` −${short(error[0], 2)} +${short(error[1], 2)}`);
   return [
-    part.texts?.[at] || part.label, said(panel.x, part.x[at]), said(panel.y, part.y[at]) + (spread ?? ''),
+    part.texts?.[at] || part.label,
+    said(panel.x, part.x[at]),
+    said(panel.y, part.y[at]) + (spread ?? ''),
     part.sources?.[at] && `Source: ${part.sources[at]}`,
   ].filter(Boolean);
 }
 
 /** Value of a curve at x; null beyond its ends or where it has several. */
 function onCurve(x, values, at, isStepped) {
-  const place = x.findIndex((end, after) => after > 0 && end !== null && x[after - 1] !== null && at >= x[after - 1] && at <= end);
+  const place = x.findIndex(
+    (end, after) => after > 0 && end !== null && x[after - 1] !== null && at >= x[after - 1] && at <= end,
+  );
   const [one, other, low, high] = [x[place - 1], x[place], values[place - 1], values[place]];
   if (place < 0 || low === null || high === null) return null;
   return isStepped || other === one ? low : low + ((at - one) / (other - one)) * (high - low);
@@ -252,12 +297,27 @@ function onCurve(x, values, at, isStepped) {
 
 const ascends = (x) => x.every((value, at) => !at || value === null || x[at - 1] === null || value >= x[at - 1]);
 
-/** The point of a panel that is nearest to a place in pixels; undefined where none is near. @param {Panel} panel @param {object} map @param {number} left @param {number} top @param {number} scale */
-export const nearPoint = (panel, map, left, top, scale) => pointsOf(panel)
-  .map((point) => [Math.hypot(map.x.to(point.x) - left, map.y.to(point.y) - top), point])
-  .filter(([distance]) => distance < NEAR * scale).sort(([one], [other]) => one - other)[0]?.[1];
+/**
+ * The point of a panel that is nearest to a place in pixels; undefined where none is near.
+ * @param {Panel} panel
+ * @param {object} map
+ * @param {number} left
+ * @param {number} top
+ * @param {number} scale
+ */
+export const nearPoint = (panel, map, left, top, scale) =>
+  pointsOf(panel)
+    .map((point) => [Math.hypot(map.x.to(point.x) - left, map.y.to(point.y) - top), point])
+    .filter(([distance]) => distance < NEAR * scale)
+    .sort(([one], [other]) => one - other)[0]?.[1];
 
-/** Values of the parts of a panel at a place of its axes. @param {Panel} panel @param {number} x @param {number} y @returns {string[]} */
+/**
+ * Values of the parts of a panel at a place of its axes.
+ * @param {Panel} panel
+ * @param {number} x
+ * @param {number} y
+ * @returns {string[]}
+ */
 export function valuesAt(panel, x, y) {
   const place = [said(panel.x, x), said(panel.y, y)];
   const field = fieldOf(panel);

@@ -3,8 +3,30 @@ import {html} from '../vendor/htm-preact-3.1.1.js';
 import {css, extent, mix, rgb, roundTicks, short} from './chart-scale.js';
 
 const STOPS = {
-  cividis: ['#00224e', '#123570', '#3b496c', '#575d6d', '#707173', '#8a8678', '#a59c74', '#c3b369', '#e1cc55', '#fee838'],
-  viridis: ['#440154', '#482878', '#3e4989', '#31688e', '#26828e', '#1f9e89', '#35b779', '#6ece58', '#b5de2b', '#fde725'],
+  cividis: [
+    '#00224e',
+    '#123570',
+    '#3b496c',
+    '#575d6d',
+    '#707173',
+    '#8a8678',
+    '#a59c74',
+    '#c3b369',
+    '#e1cc55',
+    '#fee838',
+  ],
+  viridis: [
+    '#440154',
+    '#482878',
+    '#3e4989',
+    '#31688e',
+    '#26828e',
+    '#1f9e89',
+    '#35b779',
+    '#6ece58',
+    '#b5de2b',
+    '#fde725',
+  ],
   grey: ['#ffffff', '#f0f0f0', '#d9d9d9', '#bdbdbd', '#969696', '#737373', '#525252', '#252525', '#000000'],
 };
 const CATEGORIES = ['#bfbfbf', '#9ecae1', '#fdd0a2', '#c7e9c0', '#dadaeb'];
@@ -50,7 +72,10 @@ function placeOn(axis, value, isCell) {
   const half = isCell && last > 0 ? [(axis[1] - first) / 2, (end - axis[last - 1]) / 2] : [0, 0];
   const slack = 1e-9 * Math.abs(end - first);
   if (value < first - half[0] - slack || value > end + half[1] + slack) return null;
-  const low = Math.max(0, axis.findLastIndex((each, at) => at < last && each <= value));
+  const low = Math.max(
+    0,
+    axis.findLastIndex((each, at) => at < last && each <= value),
+  );
   return low + Math.min(Math.max((value - axis[low]) / (axis[Math.min(low + 1, last)] - axis[low] || 1), -0.5), 1.5);
 }
 
@@ -59,15 +84,28 @@ function valueAt(field, column, row) {
   const {values, levels} = field;
   if (column === null || row === null) return null;
   if (!levels) return values[Math.round(Math.max(row, 0))]?.[Math.round(Math.max(column, 0))] ?? null;
-  const [left, below] = [Math.min(Math.floor(column), field.x.length - 2), Math.min(Math.floor(row), field.y.length - 2)];
+  const [left, below] = [
+    Math.min(Math.floor(column), field.x.length - 2),
+    Math.min(Math.floor(row), field.y.length - 2),
+  ];
   const [right, above] = [column - left, row - below];
   const corners = [values[below][left], values[below][left + 1], values[below + 1][left], values[below + 1][left + 1]];
   if (corners.includes(null)) return null;
-  return (1 - above) * ((1 - right) * corners[0] + right * corners[1]) + above * ((1 - right) * corners[2] + right * corners[3]);
+  return (
+    (1 - above) * ((1 - right) * corners[0] + right * corners[1]) +
+    above * ((1 - right) * corners[2] + right * corners[3])
+  );
 }
 
-/** Value of a field over the axes; null where it is not known. @param {object} field @param {number} x @param {number} y @returns {number|null} */
-export const readField = (field, x, y) => valueAt(field, placeOn(field.x, x, !field.levels), placeOn(field.y, y, !field.levels));
+/**
+ * Value of a field over the axes; null where it is not known.
+ * @param {object} field
+ * @param {number} x
+ * @param {number} y
+ * @returns {number|null}
+ */
+export const readField = (field, x, y) =>
+  valueAt(field, placeOn(field.x, x, !field.levels), placeOn(field.y, y, !field.levels));
 
 const images = new WeakMap();
 
@@ -81,7 +119,9 @@ function imageOf(field, map) {
   const context = canvas.getContext('2d');
   const image = context.createImageData(width, height);
   const {colour} = scaleOf(field);
-  const columns = Array.from({length: width}, (_, at) => placeOn(field.x, map.x.back(map.box.left + at + 0.5), !field.levels));
+  const columns = Array.from({length: width}, (_, at) =>
+    placeOn(field.x, map.x.back(map.box.left + at + 0.5), !field.levels),
+  );
   for (let at = 0; at < height; at += 1) {
     const row = placeOn(field.y, map.y.back(map.box.top + at + 0.5), !field.levels);
     for (let across = 0; across < width && row !== null; across += 1) {
@@ -103,7 +143,12 @@ function pieces({x, y, values}, level, map) {
   const found = [];
   for (let row = 0; row < y.length - 1; row += 1) {
     for (let column = 0; column < x.length - 1; column += 1) {
-      const corners = [[0, 0], [1, 0], [1, 1], [0, 1]].map(([right, up]) => [x[column + right], y[row + up], values[row + up][column + right]]);
+      const corners = [
+        [0, 0],
+        [1, 0],
+        [1, 1],
+        [0, 1],
+      ].map(([right, up]) => [x[column + right], y[row + up], values[row + up][column + right]]);
       if (corners.some(([, , value]) => value === null)) continue;
       const isAbove = corners.map(([, , value]) => value >= level);
       const crossed = corners.flatMap((one, side) => {
@@ -114,14 +159,21 @@ function pieces({x, y, values}, level, map) {
         return [[map.x.to(across), map.y.to(upward)]];
       });
       const isMiddle = corners.reduce((sum, [, , value]) => sum + value, 0) / 4 >= level;
-      if (crossed.length === 4 && isMiddle !== isAbove[0]) crossed.push(crossed.shift()); // which corners of a saddle are joined
+      // which corners of a saddle are joined
+      if (crossed.length === 4 && isMiddle !== isAbove[0]) crossed.push(crossed.shift());
       for (let at = 0; at < crossed.length; at += 2) found.push([crossed[at], crossed[at + 1]]);
     }
   }
   return found;
 }
 
-/** Draw a field between the axes. @param {CanvasRenderingContext2D} context @param {object} field @param {object} map @param {object} scale */
+/**
+ * Draw a field between the axes.
+ * @param {CanvasRenderingContext2D} context
+ * @param {object} field
+ * @param {object} map
+ * @param {object} scale
+ */
 export function drawField(context, field, map, scale) {
   context.drawImage(imageOf(field, map), map.box.left, map.box.top);
   if (!field.levels || !field.lines) return;
@@ -134,7 +186,12 @@ export function drawField(context, field, map, scale) {
     context.lineTo(...other);
   }
   context.stroke();
-  Object.assign(context, {font: `${9.5 * scale}px sans-serif`, textAlign: 'center', textBaseline: 'middle', lineJoin: 'round'});
+  Object.assign(context, {
+    font: `${9.5 * scale}px sans-serif`,
+    textAlign: 'center',
+    textBaseline: 'middle',
+    lineJoin: 'round',
+  });
   Object.assign(context, {lineWidth: 3 * scale, strokeStyle: '#2a3f6e', fillStyle: 'white'});
   for (const [text, found] of lines) {
     const [x, y, angle] = labelOf(found, map.box) ?? [];
@@ -151,8 +208,13 @@ export function drawField(context, field, map, scale) {
 /** Place and angle of the label of a line: where it is nearest to the rising diagonal; null where it has no room. */
 function labelOf(found, {left, top, width, height}) {
   const far = ([[x, y]]) => Math.abs((x - left) / width - (top + height - y) / height);
-  const inner = found.filter(([[x, y]]) => x > left + MARGIN * width && x < left + (1 - MARGIN) * width
-    && y > top + MARGIN * height && y < top + (1 - MARGIN) * height);
+  const inner = found.filter(
+    ([[x, y]]) =>
+      x > left + MARGIN * width &&
+      x < left + (1 - MARGIN) * width &&
+      y > top + MARGIN * height &&
+      y < top + (1 - MARGIN) * height,
+  );
   if (inner.length < MIN_PIECES) return null;
   const [[x, y], [nextX, nextY]] = inner.reduce((best, each) => (far(each) < far(best) ? each : best));
   const angle = Math.atan((nextY - y) / (nextX - x || 1e-9));
@@ -161,17 +223,37 @@ function labelOf(found, {left, top, width, height}) {
 
 /** Scale of colours with its text, as high as a panel. @param {{field: object, height: number}} properties */
 export function ColourScale({field, height}) {
-  const {ends: [low, high], colour} = scaleOf(field);
+  const {
+    ends: [low, high],
+    colour,
+  } = scaleOf(field);
   const [top, room] = [8, Math.max(height - 16, 60)];
   const edges = field.levels ?? Array.from({length: 65}, (_, at) => low + (at / 64) * (high - low));
   const y = (value) => top + room * (1 - (value - low) / (high - low || 1));
-  const ticks = field.levels && field.lines
-    ? field.levels.filter((_, at) => at % Math.max(1, Math.floor((field.levels.length - 1) / 5)) === 0)
-    : roundTicks(low, high, 6);
-  return html`<svg class="chart-colours" width="66" height=${height} role="img" aria-label=${`Colours: ${field.scale_text}, from ${short(low)} to ${short(high)}`}>
-    ${edges.slice(1).map((edge, at) => html`<rect key=${at} x="2" width="13" y=${y(edge)} height=${y(edges[at]) - y(edge) + 0.5}
-      fill=${css(colour((edge + edges[at]) / 2))} />`)}
+  const ticks =
+    field.levels && field.lines
+      ? field.levels.filter((_, at) => at % Math.max(1, Math.floor((field.levels.length - 1) / 5)) === 0)
+      : roundTicks(low, high, 6);
+  return html`<svg
+    class="chart-colours"
+    width="66"
+    height=${height}
+    role="img"
+    aria-label=${`Colours: ${field.scale_text}, from ${short(low)} to ${short(high)}`}
+  >
+    ${edges.slice(1).map(
+      (edge, at) => html`<rect
+        key=${at}
+        x="2"
+        width="13"
+        y=${y(edge)}
+        height=${y(edges[at]) - y(edge) + 0.5}
+        fill=${css(colour((edge + edges[at]) / 2))}
+      />`,
+    )}
     ${ticks.map((tick) => html`<text key=${tick} x="19" y=${y(tick)} dy="0.35em">${short(tick, 3)}</text>`)}
-    <text class="chart-axis-text" transform=${`translate(60 ${top + room / 2}) rotate(-90)`} text-anchor="middle">${field.scale_text}</text>
+    <text class="chart-axis-text" transform=${`translate(60 ${top + room / 2}) rotate(-90)`} text-anchor="middle">
+      ${field.scale_text}
+    </text>
   </svg>`;
 }

@@ -12,20 +12,37 @@ const THUMB = 28; // px that it can be grasped at, as in the style
 const MOVED = 4; // px beyond which a press is no click
 
 /** What must be made anew, rather than given new data. */
-const structureOf = ({x, y}) => JSON.stringify([x, y].map((axis) => [axis.text, axis.logarithmic, axis.words, axis.reciprocal, axis.proportional, axis.lowest > axis.highest]));
+const structureOf = ({x, y}) =>
+  JSON.stringify(
+    [x, y].map((axis) => [
+      axis.text,
+      axis.logarithmic,
+      axis.words,
+      axis.reciprocal,
+      axis.proportional,
+      axis.lowest > axis.highest,
+    ]),
+  );
 
 /** @param {object} panel @returns {string} */
-export const panelName = (panel) => [panel.title, `${flat(panel.y.text)} over ${flat(panel.x.text)}`].filter(Boolean).join(': ');
+export const panelName = (panel) =>
+  [panel.title, `${flat(panel.y.text)} over ${flat(panel.x.text)}`].filter(Boolean).join(': ');
 
 /** Options of uPlot; everything that changes is read from `latest`. */
 function optionsOf(latest) {
   const now = () => latest.current;
   const scale = (name) => ({
-    time: false, distr: now().panel[name].logarithmic ? 3 : 1, log: 10, dir: now().ranges[name][0] > now().ranges[name][1] ? -1 : 1,
+    time: false,
+    distr: now().panel[name].logarithmic ? 3 : 1,
+    log: 10,
+    dir: now().ranges[name][0] > now().ranges[name][1] ? -1 : 1,
     range: () => [...now().ranges[name]].sort((one, other) => one - other),
   });
   const axis = (name) => ({
-    scale: name, font: FONT, labelFont: FONT, stroke: () => now().theme.muted,
+    scale: name,
+    font: FONT,
+    labelFont: FONT,
+    stroke: () => now().theme.muted,
     grid: {stroke: () => now().theme.grid, width: 1, show: !fieldOf(now().panel)},
     ticks: {stroke: () => now().theme.grid, size: 4, width: 1},
     border: {show: true, stroke: () => now().theme.kept, width: 1},
@@ -37,21 +54,41 @@ function optionsOf(latest) {
     values: (u, splits) => tickTexts(now().panel[name], splits),
   });
   const axes = [
-    {...axis('x'), label: now().hasXText ? flat(now().panel.x.text) : undefined, labelSize: 18, labelGap: 0,
-      size: 15 + 13 * Math.max(1, ...(now().panel.x.words ?? []).map((word) => word.split('\n').length))},
+    {
+      ...axis('x'),
+      label: now().hasXText ? flat(now().panel.x.text) : undefined,
+      labelSize: 18,
+      labelGap: 0,
+      size: 15 + 13 * Math.max(1, ...(now().panel.x.words ?? []).map((word) => word.split('\n').length)),
+    },
     {...axis('y'), size: (u, values) => 14 + 6.6 * Math.max(2, ...(values ?? []).map((text) => text.length))},
   ];
-  for (const [name, side] of [['x', 0], ['y', 1]]) {
+  for (const [name, side] of [
+    ['x', 0],
+    ['y', 1],
+  ]) {
     const {reciprocal, proportional} = now().panel[name];
     const [constant, label] = reciprocal ?? proportional ?? [];
     if (label === undefined) continue;
     const other = (value) => (reciprocal ? constant / value : constant * value);
-    axes.push({...axis(name), side, grid: {show: false}, size: name === 'x' ? 24 : 44, label, labelSize: 18, values: (u, splits) => tickTexts({}, splits.map(other))});
+    axes.push({
+      ...axis(name),
+      side,
+      grid: {show: false},
+      size: name === 'x' ? 24 : 44,
+      label,
+      labelSize: 18,
+      values: (u, splits) => tickTexts({}, splits.map(other)),
+    });
   }
   return {
-    width: now().width, height: now().height, scales: {x: scale('x'), y: scale('y')}, axes,
+    width: now().width,
+    height: now().height,
+    scales: {x: scale('x'), y: scale('y')},
+    axes,
     series: [{}, {scale: 'y', paths: () => null, points: {show: false}}],
-    legend: {show: false}, padding: [8, 14, 2, 0],
+    legend: {show: false},
+    padding: [8, 14, 2, 0],
     cursor: {drag: {x: false, y: false, setScale: false}, points: {show: false}, focus: {prox: -1}},
     hooks: {draw: [(u) => now().draw(u)]},
   };
@@ -64,13 +101,29 @@ const valueAt = (axis, ends, share) => along(axis, ends).back(Math.min(Math.max(
 const stepped = (axis, ends, value, share) => valueAt(axis, ends, along(axis, ends).to(value) + share);
 
 /**
- * @param {{panel: Object, place: number, ranges: {x: number[], y: number[]}, behind: Object[], width: number, height: number,
- *   hasXText: boolean, theme: Object, drag?: Object, over?: (panel: Object, ranges: Object) => any, onPick?: Function, picks?: string,
- *   onRead?: (point: Object|null) => void, ringed?: {x: number, y: number}, say: (text: string) => void}} props `over` gives what lies over the
- *   area between the axes, `onRead` is told the point that is read, null where none is
+ * @param {{panel: Object, place: number, ranges: {x: number[], y: number[]}, behind: Object[], width: number, height:
+ *   number, hasXText: boolean, theme: Object, drag?: Object, over?: (panel: Object, ranges: Object) => any, onPick?:
+ *   Function, picks?: string, onRead?: (point: Object|null) => void, ringed?: {x: number, y: number}, say: (text:
+ *   string) => void}} props `over` gives what lies over the area between the axes, `onRead` is told the point that is
+ *   read, null where none is
  */
 export function ChartPanel(props) {
-  const {panel, place, behind, width, height, hasXText, theme, drag, over, onPick, picks = 'sets the rig', onRead, ringed, say} = props;
+  const {
+    panel,
+    place,
+    behind,
+    width,
+    height,
+    hasXText,
+    theme,
+    drag,
+    over,
+    onPick,
+    picks = 'sets the rig',
+    onRead,
+    ringed,
+    say,
+  } = props;
   const [host, handle, veil, plot] = [useRef(null), useRef(null), useRef(null), useRef(null)];
   const latest = useRef(null);
   const [tip, setTip] = useState(null);
@@ -81,13 +134,28 @@ export function ChartPanel(props) {
 
   const mapOf = (u) => mapping(panel, ranges, u.bbox);
   latest.current = {
-    ...props, ranges, draw: (u) => {
+    ...props,
+    ranges,
+    draw: (u) => {
       const map = mapOf(u);
       drawParts(u.ctx, panel, {map, theme, scale: devicePixelRatio, behind, rule, held, ringed});
-      const [left, top, length, high] = [map.box.left, map.box.top, map.box.width, map.box.height].map((each) => each / devicePixelRatio);
-      if (veil.current) Object.assign(veil.current.style, {left: `${left}px`, top: `${top}px`, width: `${length}px`, height: `${high}px`});
+      const [left, top, length, high] = [map.box.left, map.box.top, map.box.width, map.box.height].map(
+        (each) => each / devicePixelRatio,
+      );
+      if (veil.current)
+        Object.assign(veil.current.style, {
+          left: `${left}px`,
+          top: `${top}px`,
+          width: `${length}px`,
+          height: `${high}px`,
+        });
       if (!handle.current || !rule) return;
-      Object.assign(handle.current.style, {left: `${left - THUMB / 2}px`, top: `${top}px`, width: `${length + THUMB}px`, height: `${high}px`});
+      Object.assign(handle.current.style, {
+        left: `${left - THUMB / 2}px`,
+        top: `${top}px`,
+        width: `${length + THUMB}px`,
+        height: `${high}px`,
+      });
     },
   };
 
@@ -115,12 +183,19 @@ export function ChartPanel(props) {
     const box = host.current.getBoundingClientRect();
     const map = mapOf(plot.current);
     const [left, top] = [event.clientX - box.left, event.clientY - box.top].map((each) => each * devicePixelRatio);
-    const isIn = left >= map.box.left && left <= map.box.left + map.box.width && top >= map.box.top && top <= map.box.top + map.box.height;
+    const isIn =
+      left >= map.box.left &&
+      left <= map.box.left + map.box.width &&
+      top >= map.box.top &&
+      top <= map.box.top + map.box.height;
     return {map, left, top, isIn, x: map.x.back(left), y: map.y.back(top)};
   };
   const showTip = (map, left, top, texts, isKept = false) => {
     setTip({left: left / devicePixelRatio, top: top / devicePixelRatio, texts, isKept});
-    plot.current.setCursor({left: (left - map.box.left) / devicePixelRatio, top: (top - map.box.top) / devicePixelRatio}, false);
+    plot.current.setCursor(
+      {left: (left - map.box.left) / devicePixelRatio, top: (top - map.box.top) / devicePixelRatio},
+      false,
+    );
   };
   const hide = () => {
     setTip(null);
@@ -145,7 +220,11 @@ export function ChartPanel(props) {
   /** Arrow keys read values, up and down where there are no points, else point after point. */
   const press = (event) => {
     const points = pointsOf(panel);
-    const now = at.current ?? {x: rule?.value ?? valueAt(panel.x, ranges.x, 0.5), y: valueAt(panel.y, ranges.y, 0.5), number: -1};
+    const now = at.current ?? {
+      x: rule?.value ?? valueAt(panel.x, ranges.x, 0.5),
+      y: valueAt(panel.y, ranges.y, 0.5),
+      number: -1,
+    };
     const size = (event.shiftKey ? 10 : 1) / STEPS;
     const step = (name, share) => [{...now, [name]: stepped(panel[name], ranges[name], now[name], share)}];
     const toPoint = (by) => {
@@ -155,7 +234,8 @@ export function ChartPanel(props) {
     };
     const isByPoint = points.length > 0 && !fieldOf(panel);
     const moves = {
-      ArrowLeft: () => step('x', -size), ArrowRight: () => step('x', size),
+      ArrowLeft: () => step('x', -size),
+      ArrowRight: () => step('x', size),
       ArrowUp: () => (isByPoint ? toPoint(now.number < 0 ? 0 : -1) : step('y', size)),
       ArrowDown: () => (isByPoint ? toPoint(1) : step('y', -size)),
     };
@@ -183,17 +263,58 @@ export function ChartPanel(props) {
   };
 
   const value = rule && (held ?? rule.value);
-  const hint = `Arrow keys read values${pointsOf(panel).length ? ', up and down the points' : ''}${onPick ? `, Enter ${picks}` : ''}.`;
+  const byPoints = pointsOf(panel).length ? ', up and down the points' : '';
+  const hint = `Arrow keys read values${byPoints}${onPick ? `, Enter ${picks}` : ''}.`;
   return html`<div class="chart-frame">
-    <div ref=${host} class=${`chart-plot${onPick ? ' is-pickable' : ''}`} role="img" tabindex="0" data-test=${`plot:${place}`}
-      aria-label=${`${panelName(panel)}. ${hint}`} onPointerMove=${hover} onPointerLeave=${hide} onKeyDown=${press} onBlur=${hide}
-      onPointerDown=${(event) => { pressed.current = [event.clientX, event.clientY]; hover(event); }} onClick=${pick}></div>
-    ${rule && html`<input ref=${handle} type="range" class="chart-handle" min="0" max=${RULE_STEPS} value=${Math.round(RULE_STEPS * along(panel.x, ranges.x).to(value))} aria-valuetext=${withUnit(value, panel.x)}
-      aria-label=${`${rule.label || 'Value'}, ${flat(panel.x.label)}`} data-test=${`drag:${place}`} onInput=${move} onChange=${release} onPointerDown=${hide} />`}
+    <div
+      ref=${host}
+      class=${`chart-plot${onPick ? ' is-pickable' : ''}`}
+      role="img"
+      tabindex="0"
+      data-test=${`plot:${place}`}
+      aria-label=${`${panelName(panel)}. ${hint}`}
+      onPointerMove=${hover}
+      onPointerLeave=${hide}
+      onKeyDown=${press}
+      onBlur=${hide}
+      onPointerDown=${(event) => {
+        pressed.current = [event.clientX, event.clientY];
+        hover(event);
+      }}
+      onClick=${pick}
+    ></div>
+    ${
+      rule &&
+      html`<input
+        ref=${handle}
+        type="range"
+        class="chart-handle"
+        min="0"
+        max=${RULE_STEPS}
+        value=${Math.round(RULE_STEPS * along(panel.x, ranges.x).to(value))}
+        aria-valuetext=${withUnit(value, panel.x)}
+        aria-label=${`${rule.label || 'Value'}, ${flat(panel.x.label)}`}
+        data-test=${`drag:${place}`}
+        onInput=${move}
+        onChange=${release}
+        onPointerDown=${hide}
+      />`
+    }
     ${over && html`<div ref=${veil} class="chart-over">${over(panel, ranges)}</div>`}
-    ${tip && html`<div class=${`chart-tip${tip.left > width / 2 ? ' is-left' : ''}${tip.top > height / 2 ? ' is-above' : ''}`}
-      style=${{left: `${tip.left}px`, top: `${tip.top}px`, maxWidth: `${Math.max(150, Math.max(tip.left, width - tip.left) - 16)}px`}}
-      aria-hidden="true" data-test="tip">
-      ${tip.texts.map((text, number) => html`<div key=${number}>${text}</div>`)}</div>`}
+    ${
+      tip &&
+      html`<div
+        class=${`chart-tip${tip.left > width / 2 ? ' is-left' : ''}${tip.top > height / 2 ? ' is-above' : ''}`}
+        style=${{
+          left: `${tip.left}px`,
+          top: `${tip.top}px`,
+          maxWidth: `${Math.max(150, Math.max(tip.left, width - tip.left) - 16)}px`,
+        }}
+        aria-hidden="true"
+        data-test="tip"
+      >
+        ${tip.texts.map((text, number) => html`<div key=${number}>${text}</div>`)}
+      </div>`
+    }
   </div>`;
 }

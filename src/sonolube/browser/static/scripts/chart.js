@@ -56,11 +56,19 @@ function commonScale(chart) {
 
 /** Labelled parts of some panels, and names of categories, each label once. */
 function entriesOf(panels) {
-  const category = (part) => (number) => [part.words[number], {kind: 'zone', colour: categoryColour(number), opacity: 1, isPlain: true}];
-  const entries = panels.flatMap((panel) => panel.parts).flatMap((part) => {
-    if (part.kind === 'field') return part.words ? [...new Set(part.values.flat())].filter((value) => value !== null).map(category(part)) : [];
-    return part.label && part.kind !== 'note' ? [[part.label, part.shades ? {...part, colour: '#808080'} : part]] : [];
-  });
+  const category = (part) => (number) => [
+    part.words[number],
+    {kind: 'zone', colour: categoryColour(number), opacity: 1, isPlain: true},
+  ];
+  const entries = panels
+    .flatMap((panel) => panel.parts)
+    .flatMap((part) => {
+      if (part.kind === 'field')
+        return part.words ? [...new Set(part.values.flat())].filter((value) => value !== null).map(category(part)) : [];
+      return part.label && part.kind !== 'note'
+        ? [[part.label, part.shades ? {...part, colour: '#808080'} : part]]
+        : [];
+    });
   return entries.filter(([label], at) => at === entries.findIndex(([other]) => other === label));
 }
 
@@ -68,18 +76,51 @@ function Swatch({part, theme}) {
   const [stroke, fill] = [theme.stroke(part.colour), part.isPlain ? part.colour : theme.fill(part.colour)];
   const isFilled = part.kind === 'band' || part.kind === 'zone' || part.kind === 'bars';
   return html`<svg width="26" height="14" viewBox="0 0 26 14" aria-hidden="true">
-    ${isFilled && html`<rect x="2" y="2" width="22" height="10" fill=${part.kind === 'bars' ? stroke : fill} fill-opacity=${part.opacity ?? 1} />`}
-    ${(part.kind === 'line' || part.kind === 'rule') && html`<path d="M1 7H25" fill="none" stroke=${part.isKept ? theme.kept : stroke} stroke-width="2"
-      stroke-dasharray=${dash(part.dash).join(' ')} />`}
-    ${part.marker != null && html`<path transform="translate(13 7) scale(4)" d=${MARKERS[part.marker % MARKERS.length]} fill=${part.is_hollow ? 'none' : stroke}
-      stroke=${stroke} stroke-width=${part.is_hollow ? 0.35 : 0.1} />`}
+    ${
+      isFilled &&
+      html`<rect
+        x="2"
+        y="2"
+        width="22"
+        height="10"
+        fill=${part.kind === 'bars' ? stroke : fill}
+        fill-opacity=${part.opacity ?? 1}
+      />`
+    }
+    ${
+      (part.kind === 'line' || part.kind === 'rule') &&
+      html`<path
+        d="M1 7H25"
+        fill="none"
+        stroke=${part.isKept ? theme.kept : stroke}
+        stroke-width="2"
+        stroke-dasharray=${dash(part.dash).join(' ')}
+      />`
+    }
+    ${
+      part.marker != null &&
+      html`<path
+        transform="translate(13 7) scale(4)"
+        d=${MARKERS[part.marker % MARKERS.length]}
+        fill=${part.is_hollow ? 'none' : stroke}
+        stroke=${stroke}
+        stroke-width=${part.is_hollow ? 0.35 : 0.1}
+      />`
+    }
   </svg>`;
 }
 
-const Legend = ({entries, theme, title}) => (entries.length ? html`<div class="chart-legend">
-  ${title && html`<span class="chart-legend-title">${title}</span>`}
-  <ul>${entries.map(([label, part]) => html`<li key=${label}><${Swatch} part=${part} theme=${theme} /><span>${label}</span></li>`)}</ul>
-</div>` : null);
+const Legend = ({entries, theme, title}) =>
+  entries.length
+    ? html`<div class="chart-legend">
+      ${title && html`<span class="chart-legend-title">${title}</span>`}
+      <ul>
+        ${entries.map(
+          ([label, part]) => html`<li key=${label}><${Swatch} part=${part} theme=${theme} /><span>${label}</span></li>`,
+        )}
+      </ul>
+    </div>`
+    : null;
 
 /** Shares of columns or rows, equal ones where they are not given, and their sum. */
 function sharesOf(given, count) {
@@ -95,7 +136,7 @@ function layoutOf({panels, columns: wanted, size: [inchWide, inchHigh], widths, 
   const [wide, allWide] = sharesOf(isWhole ? widths : null, columns);
   const [high, allHigh] = sharesOf(heights, rows);
   const room = Math.min(width, WIDEST * columns) - GAP * (columns - 1);
-  const aspect = (inchHigh / rows) / (inchWide / wanted);
+  const aspect = inchHigh / rows / (inchWide / wanted);
   const base = Math.min(Math.max((room / columns) * aspect, LOWEST), HIGHEST);
   const sizeOf = (place) => {
     const own = Math.floor((room * wide[place % columns]) / allWide - (isScaled(place) ? COLOURS_WIDTH : 0));
@@ -118,57 +159,137 @@ function ChartTables({tables: latest, name}) {
   if (latest) last.current = latest;
   const tables = last.current;
   if (!tables?.length) return null;
-  return html`<details class=${classes('chart-numbers', {'is-dim': !latest})} onToggle=${(event) => setOpen(event.target.open)} data-test=${`numbers:${name}`}>
+  return html`<details
+    class=${classes('chart-numbers', {'is-dim': !latest})}
+    onToggle=${(event) => setOpen(event.target.open)}
+    data-test=${`numbers:${name}`}
+  >
     <summary>Numbers</summary>
-    ${isOpen && tables.map((table, at) => html`<${TextTable} key=${at} caption=${table.title || 'Numbers'}
-      heads=${table.heads} rows=${table.rows} kind="chart-table" hasRowHeads=${false} />`)}
+    ${
+      isOpen &&
+      tables.map(
+        (table, at) => html`<${TextTable}
+          key=${at}
+          caption=${table.title || 'Numbers'}
+          heads=${table.heads}
+          rows=${table.rows}
+          kind="chart-table"
+          hasRowHeads=${false}
+        />`,
+      )
+    }
   </details>`;
 }
 
 /**
- * @param {{name: string, caption?: string, chart: Object, tables?: Object[], dimmed?: boolean,
- *   kept?: {label: string, chart: Object}[], onPick?: (place: {panel: number, x: number, y: number}) => void,
- *   canPick?: (panel: number) => boolean, picks?: string, onRead?: (point: Object|null) => void, ringed?: {x: number, y: number},
- *   drag?: {panel: number, onMove: (x: number) => void, onRelease: (x: number) => void}[],
- *   over?: (panel: object, ranges: object) => any}} props `over` gives what lies over the area between the axes of a panel
+ * @param {{name: string, caption?: string, chart: Object, tables?: Object[], dimmed?: boolean, kept?: {label: string,
+ *   chart: Object}[], onPick?: (place: {panel: number, x: number, y: number}) => void, canPick?: (panel: number) =>
+ *   boolean, picks?: string, onRead?: (point: Object|null) => void, ringed?: {x: number, y: number}, drag?: {panel:
+ *   number, onMove: (x: number) => void, onRelease: (x: number) => void}[], over?: (panel: object, ranges: object) =>
+ *   any}} props `over` gives what lies over the area between the axes of a panel
  */
-export function Chart({name, caption, chart, tables, dimmed, kept = NO_KEPT, onPick, canPick, picks, onRead, ringed, drag, over}) {
+export function Chart({
+  name,
+  caption,
+  chart,
+  tables,
+  dimmed,
+  kept = NO_KEPT,
+  onPick,
+  canPick,
+  picks,
+  onRead,
+  ringed,
+  drag,
+  over,
+}) {
   const [figure, width, theme] = useRoom();
   const [said, say] = useState('');
   const keptCharts = useMemo(() => kept.map((each) => each.chart), [kept]);
   const ranges = useMemo(() => rangesOf(chart, keptCharts), [chart, keptCharts]);
-  const behind = useMemo(() => chart.panels.map((_, place) => keptCharts.map((each) => (each.panels[place]?.parts ?? [])
-    .find((part) => part.kind === 'line')).filter(Boolean)), [chart, keptCharts]);
+  const behind = useMemo(
+    () =>
+      chart.panels.map((_, place) =>
+        keptCharts
+          .map((each) => (each.panels[place]?.parts ?? []).find((part) => part.kind === 'line'))
+          .filter(Boolean),
+      ),
+    [chart, keptCharts],
+  );
   const common = useMemo(() => commonScale(chart), [chart]);
   const isScaled = (place) => !common && Boolean(scaledOf(chart.panels[place]));
   const room = width - (common ? COLOURS_WIDTH : 0);
   const layout = width && theme ? layoutOf(chart, ranges, room, isScaled) : null;
   const {legend} = chart;
-  const keptEntries = kept.map((each, place) => [`kept: ${each.label}`, {kind: 'line', colour: '#808080', dash: place, isKept: true}]);
+  const keptEntries = kept.map((each, place) => [
+    `kept: ${each.label}`,
+    {kind: 'line', colour: '#808080', dash: place, isKept: true},
+  ]);
   const label = caption || chart.title?.replaceAll('\n', ', ') || panelName(chart.panels[0]);
   const hasXText = (place) => !chart.shares_x || !layout.isWhole || !chart.panels[place + layout.columns]?.parts.length;
 
-  return html`<figure ref=${figure} class=${classes('chart', {'is-dimmed': dimmed})} aria-label=${label} data-test=${`chart:${name}`}>
-    ${chart.title && html`<p class="chart-title">${chart.title.split('\n').map((row, place) => html`<span key=${place}>${row}</span>`)}</p>`}
-    ${layout && html`<${Legend} theme=${theme} title=${legend === 'panels' ? null : chart.legend_title}
-      entries=${[...(['panels', 'none'].includes(legend) ? [] : entriesOf(chart.panels)), ...keptEntries]} />`}
+  return html`<figure
+    ref=${figure}
+    class=${classes('chart', {'is-dimmed': dimmed})}
+    aria-label=${label}
+    data-test=${`chart:${name}`}
+  >
+    ${
+      chart.title &&
+      html`<p class="chart-title">
+        ${chart.title.split('\n').map((row, place) => html`<span key=${place}>${row}</span>`)}
+      </p>`
+    }
+    ${
+      layout &&
+      html`<${Legend}
+        theme=${theme}
+        title=${legend === 'panels' ? null : chart.legend_title}
+        entries=${[...(['panels', 'none'].includes(legend) ? [] : entriesOf(chart.panels)), ...keptEntries]}
+      />`
+    }
     <div class="chart-row">
-      <div class="chart-grid" style=${layout ? {gridTemplateColumns: `repeat(${layout.columns}, max-content)`, gap: `${GAP}px`} : {}}>
-        ${layout && chart.panels.map((panel, place) => {
-          if (!panel.parts.length) return html`<div key=${place}></div>`;
-          const size = layout.sizeOf(place);
-          const field = isScaled(place) ? scaledOf(panel) : null;
-          return html`<div key=${place} class="chart-panel" style=${{width: `${size.width + (field ? COLOURS_WIDTH : 0)}px`}}>
-            ${panel.title && html`<p class="chart-panel-title">${panel.title}</p>`}
-            <p class="chart-y" aria-hidden="true">${flat(panel.y.text)}</p>
-            ${legend === 'panels' && html`<${Legend} theme=${theme} entries=${entriesOf([panel])} />`}
-            <div class="chart-row">
-              <${ChartPanel} panel=${panel} place=${place} ranges=${ranges[place]} behind=${behind[place]} width=${size.width}
-                height=${size.height + (hasXText(place) ? TEXT_HEIGHT : 0)} hasXText=${hasXText(place)} theme=${theme} drag=${drag?.find((each) => each.panel === place)}
-                over=${over} onPick=${!canPick || canPick(place) ? onPick : undefined} picks=${picks} onRead=${onRead} ringed=${ringed} say=${say} />
-              ${field && html`<${ColourScale} field=${field} height=${size.height - 20} />`}
-            </div></div>`;
-        })}
+      <div
+        class="chart-grid"
+        style=${layout ? {gridTemplateColumns: `repeat(${layout.columns}, max-content)`, gap: `${GAP}px`} : {}}
+      >
+        ${
+          layout &&
+          chart.panels.map((panel, place) => {
+            if (!panel.parts.length) return html`<div key=${place}></div>`;
+            const size = layout.sizeOf(place);
+            const field = isScaled(place) ? scaledOf(panel) : null;
+            return html`<div
+              key=${place}
+              class="chart-panel"
+              style=${{width: `${size.width + (field ? COLOURS_WIDTH : 0)}px`}}
+            >
+              ${panel.title && html`<p class="chart-panel-title">${panel.title}</p>`}
+              <p class="chart-y" aria-hidden="true">${flat(panel.y.text)}</p>
+              ${legend === 'panels' && html`<${Legend} theme=${theme} entries=${entriesOf([panel])} />`}
+              <div class="chart-row">
+                <${ChartPanel}
+                  panel=${panel}
+                  place=${place}
+                  ranges=${ranges[place]}
+                  behind=${behind[place]}
+                  width=${size.width}
+                  height=${size.height + (hasXText(place) ? TEXT_HEIGHT : 0)}
+                  hasXText=${hasXText(place)}
+                  theme=${theme}
+                  drag=${drag?.find((each) => each.panel === place)}
+                  over=${over}
+                  onPick=${!canPick || canPick(place) ? onPick : undefined}
+                  picks=${picks}
+                  onRead=${onRead}
+                  ringed=${ringed}
+                  say=${say}
+                />
+                ${field && html`<${ColourScale} field=${field} height=${size.height - 20} />`}
+              </div>
+            </div>`;
+          })
+        }
       </div>
       ${layout && common && html`<${ColourScale} field=${common} height=${Math.min(layout.sizeOf(0).height, 320)} />`}
     </div>

@@ -1,4 +1,7 @@
-/** Fields: entries of a rig as number and unit, with slider and spread; materials and uploaded files beside the rig; what is refused below them. */
+/**
+ * Fields: entries of a rig as number and unit, with slider and spread; materials and uploaded files beside the rig;
+ * what is refused below them.
+ */
 import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {ask, useReply} from './api.js';
 import {Button, classes, FileButton, Refusal, Select} from './parts.js';
@@ -7,7 +10,10 @@ import {change} from './state.js';
 const SLIDER_STEPS = 400;
 const PAUSE = 300; // ms after the last key until a text is read
 const REST = 500; // ms without a key until a value is entered into the history
-const BODIES = [['pin', 'Material of the pin'], ['disc', 'Material of the disc']];
+const BODIES = [
+  ['pin', 'Material of the pin'],
+  ['disc', 'Material of the disc'],
+];
 export const NOTHING = {};
 const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)(.*)$/is;
 
@@ -16,25 +22,43 @@ export const fieldId = (key) => `field-${key.replaceAll(/[^\w]/g, '-')}`;
 /** @param {string} key @returns {string} */
 export const spreadKey = (key) => `uncertainty.${key}`;
 
-/** Show the field of an entry, or the first of a table, open what it lies in, and put the cursor into it; false where there is none. @param {string} key @returns {boolean} */
+/**
+ * Show the field of an entry, or the first of a table, open what it lies in, and put the cursor into it; false where
+ * there is none.
+ * @param {string} key
+ * @returns {boolean}
+ */
 export function focusField(key) {
   const field = document.getElementById(fieldId(key)) ?? document.querySelector(`input[id^="${fieldId(key)}-"]`);
   if (!field) return false;
-  for (let around = field.closest('details'); around; around = around.parentElement.closest('details')) around.open = true;
-  field.scrollIntoView({block: 'center', behavior: matchMedia('(prefers-reduced-motion: reduce)').matches ? 'auto' : 'smooth'});
+  for (let around = field.closest('details'); around; around = around.parentElement.closest('details'))
+    around.open = true;
+  field.scrollIntoView({
+    block: 'center',
+    behavior: matchMedia('(prefers-reduced-motion: reduce)').matches ? 'auto' : 'smooth',
+  });
   field.focus({preventScroll: true});
   field.select?.();
   return true;
 }
 
-/** Number at the beginning of a text and what follows; null where there is none. @param {string} text @returns {{number: number, rest: string, digits: string}|null} */
+/**
+ * Number at the beginning of a text and what follows; null where there is none.
+ * @param {string} text
+ * @returns {{number: number, rest: string, digits: string}|null}
+ */
 export function split(text) {
   const found = NUMBER.exec(text);
   const number = found ? Number(found[1]) : NaN;
   return Number.isFinite(number) ? {number, rest: found[2], digits: found[1]} : null;
 }
 
-/** Number as it is typed, with three significant digits, and its unit. @param {number} number @param {string} unit @returns {string} */
+/**
+ * Number as it is typed, with three significant digits, and its unit.
+ * @param {number} number
+ * @param {string} unit
+ * @returns {string}
+ */
 export const typed = (number, unit) => [String(Number(number.toPrecision(3))), unit].filter(Boolean).join(' ');
 
 /** Text with its number one step up or down: one in its second digit, or ten of these. */
@@ -45,7 +69,9 @@ function stepped(text, direction, isLarge) {
   const shown = (parts.digits.split(/e/i)[0].split('.')[1] ?? '').length;
   const power = Math.max(size - 1, -12);
   const number = parts.number + direction * (isLarge ? 10 : 1) * 10 ** power;
-  const digits = /e/i.test(parts.digits) ? String(Number(number.toPrecision(4))) : number.toFixed(Math.max(-power, shown, 0));
+  const digits = /e/i.test(parts.digits)
+    ? String(Number(number.toPrecision(4)))
+    : number.toFixed(Math.max(-power, shown, 0));
   return `${digits}${parts.rest}`;
 }
 
@@ -97,8 +123,18 @@ export function TextField({id, text, unit = '', onText, onSettle, ...rest}) {
     onText(withUnit(next), true);
     later(onSettle, REST);
   };
-  return html`<input type="text" id=${id} value=${draft ?? text} onInput=${type} onKeyDown=${press} onBlur=${leave}
-    autocomplete="off" spellcheck=${false} maxlength="20000" ...${rest} />`;
+  return html`<input
+    type="text"
+    id=${id}
+    value=${draft ?? text}
+    onInput=${type}
+    onKeyDown=${press}
+    onBlur=${leave}
+    autocomplete="off"
+    spellcheck=${false}
+    maxlength="20000"
+    ...${rest}
+  />`;
 }
 
 /** Slider over the usual range of a value, by decades where it spans more than one. */
@@ -110,19 +146,45 @@ function Slider({field, text, onText, onSettle}) {
     const number = lowest * (highest / lowest) ** (event.target.value / SLIDER_STEPS);
     onText(typed(number, unit), true);
   };
-  return html`<input type="range" class="slider" min="0" max=${SLIDER_STEPS} step="1"
-    value=${Math.round(SLIDER_STEPS * Math.min(Math.max(place, 0), 1))} onInput=${move} onChange=${onSettle}
-    aria-label=${`${label}, slider`} aria-valuetext=${text} data-test=${`slider:${key}`} />`;
+  return html`<input
+    type="range"
+    class="slider"
+    min="0"
+    max=${SLIDER_STEPS}
+    step="1"
+    value=${Math.round(SLIDER_STEPS * Math.min(Math.max(place, 0), 1))}
+    onInput=${move}
+    onChange=${onSettle}
+    aria-label=${`${label}, slider`}
+    aria-valuetext=${text}
+    data-test=${`slider:${key}`}
+  />`;
 }
 
-/** Field below its label, with its refusal. @param {{id: string, label: string, refusal?: string, children: any}} properties */
-export const Labelled = ({id, label, refusal, children}) => html`<div class="field"><label for=${id}>${label}</label>${children}
-  <${Refusal} text=${refusal} id=${`${id}-refusal`} /></div>`;
+/**
+ * Field below its label, with its refusal.
+ * @param {{id: string, label: string, refusal?: string, children: any}} properties
+ */
+export const Labelled = ({id, label, refusal, children}) => html`<div class="field">
+  <label for=${id}>${label}</label>
+  ${children}
+  <${Refusal} text=${refusal} id=${`${id}-refusal`} />
+</div>`;
 
-/** What a field says of its refusal, which stands below it by the id of the field. @param {string} id @param {string} [refusal] @returns {object} */
-export const refusedBy = (id, refusal) => (refusal ? {'aria-invalid': 'true', 'aria-describedby': `${id}-refusal`} : {});
+/**
+ * What a field says of its refusal, which stands below it by the id of the field.
+ * @param {string} id
+ * @param {string} [refusal]
+ * @returns {object}
+ */
+export const refusedBy = (id, refusal) =>
+  refusal ? {'aria-invalid': 'true', 'aria-describedby': `${id}-refusal`} : {};
 
-/** Entry of a rig, with its spread. @param {{onText: (key: string, text: string|null, isMoving: boolean) => void}} props `onText` with null takes a change back */
+/**
+ * Entry of a rig, with its spread.
+ * @param {{onText: (key: string, text: string|null, isMoving: boolean) => void}} props `onText` with null takes a
+ *   change back
+ */
 export function Field({field, text, spread, isChanged, refusal, spreadRefusal, onText, onSettle}) {
   const id = fieldId(field.key);
   const [isSpread, setSpread] = useState(false);
@@ -137,33 +199,84 @@ export function Field({field, text, spread, isChanged, refusal, spreadRefusal, o
   };
   return html`<div class=${classes('field', {'is-refused': refusal, 'is-changed': isChanged})}>
     <div class="field-head">
-      <label for=${id}>${field.label}${field.assumed && html` <span class="tag" title=${field.assumed}>assumed</span>`}</label>
-      ${isChanged && html`<${Button} kind="small" onClick=${() => onText(field.key, null, false)}
-        aria-label=${`Take back the change of ${field.label}`} data-test=${`reset:${field.key}`}>take back<//>`}
+      <label for=${id}>
+        ${field.label}
+        ${field.assumed && html` <span class="tag" title=${field.assumed}>assumed</span>`}
+      </label>
+      ${
+        isChanged &&
+        html`<${Button}
+          kind="small"
+          onClick=${() => onText(field.key, null, false)}
+          aria-label=${`Take back the change of ${field.label}`}
+          data-test=${`reset:${field.key}`}
+        >
+          take back
+        <//>`
+      }
     </div>
     <div class="field-row">
-      <${TextField} id=${id} text=${text} unit=${field.unit} onText=${give} onSettle=${onSettle} title=${field.help || undefined}
-        aria-invalid=${refusal ? 'true' : undefined} aria-describedby=${described} data-test=${`field:${field.key}`} />
-      ${isNumber && html`<${Button} kind="spread-button" aria-expanded=${shown} onClick=${open} aria-label=${`Spread of ${field.label}`}
-        title="Give the spread of this value" data-test=${`spread-button:${field.key}`}>±<//>`}
+      <${TextField}
+        id=${id}
+        text=${text}
+        unit=${field.unit}
+        onText=${give}
+        onSettle=${onSettle}
+        title=${field.help || undefined}
+        aria-invalid=${refusal ? 'true' : undefined}
+        aria-describedby=${described}
+        data-test=${`field:${field.key}`}
+      />
+      ${
+        isNumber &&
+        html`<${Button}
+          kind="spread-button"
+          aria-expanded=${shown}
+          onClick=${open}
+          aria-label=${`Spread of ${field.label}`}
+          title="Give the spread of this value"
+          data-test=${`spread-button:${field.key}`}
+        >
+          ±
+        <//>`
+      }
     </div>
     ${hasSlider && html`<${Slider} field=${field} text=${text} onText=${give} onSettle=${onSettle} />`}
     <${Refusal} text=${refusal} id=${`${id}-refusal`} data-test=${`refusal:${field.key}`} />
-    ${shown && html`<div class="field-spread"><label for=${`${id}-spread`}>Spread</label>
-      <${TextField} id=${`${id}-spread`} text=${spread ?? ''} placeholder="normal 5 %"
-        onText=${(given, isMoving) => onText(spreadKey(field.key), given.trim() === '' ? null : given, isMoving)}
-        onSettle=${onSettle} aria-invalid=${spreadRefusal ? 'true' : undefined}
-        aria-describedby=${`${id}-spread-help`} data-test=${`spread:${field.key}`} />
-      <p class=${spreadRefusal ? 'refusal' : 'hint'} id=${`${id}-spread-help`}>${spreadRefusal
-        || 'As in a rig file: normal 5 %, uniform 20 %, lognormal 10 %, or uniform with two values.'}</p></div>`}
+    ${
+      shown &&
+      html`<div class="field-spread">
+        <label for=${`${id}-spread`}>Spread</label>
+        <${TextField}
+          id=${`${id}-spread`}
+          text=${spread ?? ''}
+          placeholder="normal 5 %"
+          onText=${(given, isMoving) => onText(spreadKey(field.key), given.trim() === '' ? null : given, isMoving)}
+          onSettle=${onSettle}
+          aria-invalid=${spreadRefusal ? 'true' : undefined}
+          aria-describedby=${`${id}-spread-help`}
+          data-test=${`spread:${field.key}`}
+        />
+        <p class=${spreadRefusal ? 'refusal' : 'hint'} id=${`${id}-spread-help`}>
+          ${spreadRefusal || 'As in a rig file: normal 5 %, uniform 20 %, lognormal 10 %, or uniform with two values.'}
+        </p>
+      </div>`
+    }
     ${field.help && html`<span class="hidden" id=${`${id}-help`}>${field.help}</span>`}
   </div>`;
 }
 
-/** Argument of a task by the text of a view that names an upload, which lasts as long as the workbench. @param {string} text @returns {{name: string, upload: string}} */
+/**
+ * Argument of a task by the text of a view that names an upload, which lasts as long as the workbench.
+ * @param {string} text
+ * @returns {{name: string, upload: string}}
+ */
 export const uploadOf = (text) => ({name: text.slice(text.indexOf(' ') + 1), upload: text.split(' ')[0]});
 
-/** Upload of a file that an entry of the view then names: what was refused of the last one, and what takes one. @param {string} entry */
+/**
+ * Upload of a file that an entry of the view then names: what was refused of the last one, and what takes one.
+ * @param {string} entry
+ */
 export function useFile(entry) {
   const [note, setNote] = useState('');
   const take = async (file) => {
@@ -182,13 +295,35 @@ export function MaterialChoices({view, faultOf, isAsked = true}) {
     const isUnlisted = chosen && !names.some(([name]) => name === chosen);
     const choices = [['', 'as in the rig'], ...(isUnlisted ? [[chosen, chosen]] : []), ...names];
     return html`<${Labelled} key=${body} id=${id} label=${label} refusal=${fault}>
-      <${Select} id=${id} choices=${choices} value=${chosen ?? ''} data-test=${`material:${body}`} ...${refusedBy(id, fault)}
-        onChange=${(event) => change({view: {[body]: event.target.value || null}})} /><//>`;
+      <${Select}
+        id=${id}
+        choices=${choices}
+        value=${chosen ?? ''}
+        data-test=${`material:${body}`}
+        ...${refusedBy(id, fault)}
+        onChange=${(event) => change({view: {[body]: event.target.value || null}})}
+      />
+    <//>`;
   });
 }
 
 /** Buttons that choose a table of own runs, and leave it out. */
-export const RunsChoice = ({view, onFile}) => html`<p class="row"><${FileButton} id="own-runs" accept=".csv,.txt" label="Own runs"
-    onFile=${onFile} test="runs-file" data-test="choose-runs">${view.runs ? 'Choose other runs…' : 'Choose own runs…'}<//>
-  ${view.runs && html`<strong class="grow">${uploadOf(view.runs).name}</strong>
-    <${Button} kind="small" onClick=${() => change({view: {runs: null}})} data-test="remove-runs">leave out<//>`}</p>`;
+export const RunsChoice = ({view, onFile}) => html`<p class="row">
+  <${FileButton}
+    id="own-runs"
+    accept=".csv,.txt"
+    label="Own runs"
+    onFile=${onFile}
+    test="runs-file"
+    data-test="choose-runs"
+  >
+    ${view.runs ? 'Choose other runs…' : 'Choose own runs…'}
+  <//>
+  ${
+    view.runs &&
+    html`
+      <strong class="grow">${uploadOf(view.runs).name}</strong>
+      <${Button} kind="small" onClick=${() => change({view: {runs: null}})} data-test="remove-runs">leave out<//>
+    `
+  }
+</p>`;

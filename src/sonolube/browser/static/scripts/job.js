@@ -2,8 +2,10 @@
 import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {ask, cancelRequest, useConnection} from './api.js';
 import {Button, capital, Warning} from './parts.js';
-/** @typedef {{id: string, task: string, label: string, state: string, created: number, seconds: number, reason?: string,
- * done?: number, total?: number, stage?: string}} Job */
+/**
+ * @typedef {{id: string, task: string, label: string, state: string, created: number, seconds: number, reason?: string,
+ *   done?: number, total?: number, stage?: string}} Job
+ */
 
 const BETWEEN = 400; // ms from one look at a job to the next
 const MAX_COMPARED = 12; // latest jobs of a task whose arguments are compared
@@ -25,7 +27,9 @@ export function duration(seconds) {
 /** The latest job of a task with these arguments that was not stopped; undefined where there is none. */
 async function found(task, args) {
   const {content} = await ask('api/jobs');
-  const same = (content?.jobs ?? []).filter((job) => job.task === task && job.state !== 'cancelled' && job.state !== 'interrupted');
+  const same = (content?.jobs ?? []).filter(
+    (job) => job.task === task && job.state !== 'cancelled' && job.state !== 'interrupted',
+  );
   for (const job of same.slice(0, MAX_COMPARED)) {
     const {content: known} = await ask(`api/jobs/${job.id}`);
     if (known && JSON.stringify(known.request.arguments) === JSON.stringify(args)) return known;
@@ -54,20 +58,30 @@ export function useJob(task, args) {
   useEffect(() => {
     if (!job) return undefined;
     if (job.state === 'done' && result.key !== key) {
-      ask(`api/jobs/${job.id}/result`).then(({content}) => content && latest.current === key && setResult({key, content}));
+      ask(`api/jobs/${job.id}/result`).then(
+        ({content}) => content && latest.current === key && setResult({key, content}),
+      );
     }
     if (!isActive(job)) return undefined;
-    const timer = setTimeout(() => ask(`api/jobs/${job.id}`).then(({content, failure}) => {
-      if (content) enter(key, content);
-      else enter(key, failure.kind === 'refused' ? null : {...job}, failure);
-    }), BETWEEN);
+    const timer = setTimeout(
+      () =>
+        ask(`api/jobs/${job.id}`).then(({content, failure}) => {
+          if (content) enter(key, content);
+          else enter(key, failure.kind === 'refused' ? null : {...job}, failure);
+        }),
+      BETWEEN,
+    );
     return () => clearTimeout(timer);
   }, [job]);
   const post = (path, body) => ask(path, {body}).then(({content, failure}) => enter(key, content ?? job, failure));
   return {
-    job, content: result.key.startsWith(JSON.stringify([task]).slice(0, -1)) ? result.content : null, isOld: result.key !== key,
-    failure: isKnown ? state.failure : null, isSought: task !== null && !isKnown,
-    start: (label) => post('api/jobs', {task, arguments: args, label}), cancel: () => post(`api/jobs/${job.id}/cancel`, {}),
+    job,
+    content: result.key.startsWith(JSON.stringify([task]).slice(0, -1)) ? result.content : null,
+    isOld: result.key !== key,
+    failure: isKnown ? state.failure : null,
+    isSought: task !== null && !isKnown,
+    start: (label) => post('api/jobs', {task, arguments: args, label}),
+    cancel: () => post(`api/jobs/${job.id}/cancel`, {}),
   };
 }
 
@@ -82,17 +96,26 @@ export function progressText(job) {
 /** Progress of a job with what stops it; the reason where it failed. @param {{job: Job, cancel?: any}} properties */
 export function JobState({job, cancel}) {
   if (!isActive(job)) {
-    return job.reason ? html`<${Warning} data-test="job-failed"><strong>${progressText(job)}.</strong><p>${job.reason}</p><//>` : null;
+    return job.reason
+      ? html`<${Warning} data-test="job-failed"><strong>${progressText(job)}.</strong><p>${job.reason}</p><//>`
+      : null;
   }
-  return html`<div class="job-state" data-test="job-state"><${JobProgress} job=${job} />
-    <span role="status">${progressText(job)}</span><span class="hint">${duration(secondsOf(job))}</span>
-    ${isOwn(job) && html`<${Button} onClick=${cancel} data-test="cancel-job">Cancel<//>`}</div>`;
+  return html`<div class="job-state" data-test="job-state">
+    <${JobProgress} job=${job} />
+    <span role="status">${progressText(job)}</span>
+    <span class="hint">${duration(secondsOf(job))}</span>
+    ${isOwn(job) && html`<${Button} onClick=${cancel} data-test="cancel-job">Cancel<//>`}
+  </div>`;
 }
 
 /** @param {{job: Job}} properties */
-export const JobProgress = ({job}) => html`<progress ...${job.total && {max: job.total, value: job.done}} aria-label="Progress" />`;
+export const JobProgress = ({job}) =>
+  html`<progress ...${job.total && {max: job.total, value: job.done}} aria-label="Progress" />`;
 
-/** Seconds that something already takes, shown after the first with what stops it. @param {{isWaiting: boolean}} properties */
+/**
+ * Seconds that something already takes, shown after the first with what stops it.
+ * @param {{isWaiting: boolean}} properties
+ */
 export function Waiting({isWaiting}) {
   const [seconds, setSeconds] = useState(0);
   useEffect(() => {
@@ -101,7 +124,20 @@ export function Waiting({isWaiting}) {
     const timer = setInterval(() => setSeconds((old) => old + 1), 1000);
     return () => clearInterval(timer);
   }, [isWaiting]);
-  return html`<span class="status" role="status" data-test="status">${isWaiting && html`Computing…${seconds > 0 && html` ${seconds} s
-    <progress aria-label="Computing" />`}`}</span>
-    ${isWaiting && seconds > 0 && html`<${Button} onClick=${cancelRequest} data-test="cancel-study">Cancel<//>`}`;
+  return html`
+    <span class="status" role="status" data-test="status">
+      ${
+        isWaiting &&
+        html`
+          Computing…${
+            seconds > 0 &&
+            html` ${seconds} s
+              <progress aria-label="Computing" />
+            `
+          }
+        `
+      }
+    </span>
+    ${isWaiting && seconds > 0 && html`<${Button} onClick=${cancelRequest} data-test="cancel-study">Cancel<//>`}
+  `;
 }

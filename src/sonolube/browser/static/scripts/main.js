@@ -31,9 +31,15 @@ function setTheme(theme) {
 const drawAgain = () => dispatchEvent(new Event('themechange')); // what is drawn on a canvas
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', drawAgain);
 
-const ThemeSwitch = () => html`<label class="theme"><span class="hidden">Theme</span>
-  <${Select} choices=${THEMES.map((each) => [each, capital(each)])} value=${document.documentElement.dataset.theme}
-    onChange=${(event) => setTheme(event.target.value)} data-test="theme" /></label>`;
+const ThemeSwitch = () => html`<label class="theme">
+  <span class="hidden">Theme</span>
+  <${Select}
+    choices=${THEMES.map((each) => [each, capital(each)])}
+    value=${document.documentElement.dataset.theme}
+    onChange=${(event) => setTheme(event.target.value)}
+    data-test="theme"
+  />
+</label>`;
 
 function Head() {
   const {state, canUndo, canRedo} = useApp();
@@ -44,8 +50,16 @@ function Head() {
     <a class="skip" href="#answer" onClick=${skip}>Skip to the answer</a>
     <a class="name" href=${addressOf('predict')} data-test="home">sonolube</a>
     <nav class="pages" aria-label="Pages" ref=${links}>
-      ${Object.entries(PAGES).map(([page, title]) => html`<a key=${page} href=${addressAsLeft(page)} data-test=${`page:${page}`}
-        aria-current=${state.page === page ? 'page' : undefined}>${title}</a>`)}
+      ${Object.entries(PAGES).map(
+        ([page, title]) => html`<a
+          key=${page}
+          href=${addressAsLeft(page)}
+          data-test=${`page:${page}`}
+          aria-current=${state.page === page ? 'page' : undefined}
+        >
+          ${title}
+        </a>`,
+      )}
     </nav>
     <div class="tools">
       <${Step} name="Undo" keys="Ctrl+Z" step=${undo} can=${canUndo} />
@@ -56,10 +70,25 @@ function Head() {
   </header>`;
 }
 
-const Step = ({name, keys, step, can, kind = ''}) => html`<${Button} kind="icon" onClick=${step} disabled=${!can} aria-label=${name}
-  title=${`${name} (${keys})`} data-test=${name.toLowerCase()}><svg viewBox="0 0 20 20" width="18" height="18" aria-hidden="true" class=${kind}>
-  <path d="M7 4 3 8l4 4M3.5 8H12a4.5 4.5 0 0 1 0 9H8" fill="none" stroke="currentColor" stroke-width="1.8" stroke-linecap="round"
-    stroke-linejoin="round" /></svg><//>`;
+const Step = ({name, keys, step, can, kind = ''}) => html`<${Button}
+  kind="icon"
+  onClick=${step}
+  disabled=${!can}
+  aria-label=${name}
+  title=${`${name} (${keys})`}
+  data-test=${name.toLowerCase()}
+>
+  <svg viewBox="0 0 20 20" width="18" height="18" aria-hidden="true" class=${kind}>
+    <path
+      d="M7 4 3 8l4 4M3.5 8H12a4.5 4.5 0 0 1 0 9H8"
+      fill="none"
+      stroke="currentColor"
+      stroke-width="1.8"
+      stroke-linecap="round"
+      stroke-linejoin="round"
+    />
+  </svg>
+<//>`;
 
 function skip(event) {
   event.preventDefault();
@@ -78,22 +107,38 @@ function Connection() {
   const [isWrong, setWrong] = useState(false);
   if (connection === 'ok') return null;
   if (connection === 'offline') {
-    return html`<section class="notice is-warning connection" aria-label="Connection" data-test="offline"><p role="alert">
-      <strong>No connection.</strong> The workbench does not answer; this page asks again every two seconds. Where it was
-      stopped, start it by <code>sonolube app</code>. What you typed and the last answer stay.</p></section>`;
+    return html`<section class="notice is-warning connection" aria-label="Connection" data-test="offline">
+      <p role="alert">
+        <strong>No connection.</strong> The workbench does not answer; this page asks again every two seconds. Where it
+        was stopped, start it by <code>sonolube app</code>. What you typed and the last answer stay.
+      </p>
+    </section>`;
   }
   const submit = async (event) => {
     event.preventDefault();
     setWrong(!(await enter(link)));
   };
   return html`<form class="notice is-warning connection" onSubmit=${submit} aria-label="New link" data-test="new-link">
-    <p role="alert"><strong>The workbench was started again.</strong> Paste the link that it printed; this page then goes
-      on where it was.</p>
-    <div class="row"><label class="grow"><span class="hidden">New link</span>
-      <input type="text" value=${link} onInput=${(event) => setLink(event.target.value)} autocomplete="off"
-        aria-invalid=${isWrong} aria-describedby=${isWrong ? 'link-refusal' : undefined} placeholder="http://…/?token=…"
-        data-test="link" /></label>
-      <button type="submit" class="button is-main">Go on</button></div>
+    <p role="alert">
+      <strong>The workbench was started again.</strong> Paste the link that it printed; this page then goes on where it
+      was.
+    </p>
+    <div class="row">
+      <label class="grow">
+        <span class="hidden">New link</span>
+        <input
+          type="text"
+          value=${link}
+          onInput=${(event) => setLink(event.target.value)}
+          autocomplete="off"
+          aria-invalid=${isWrong}
+          aria-describedby=${isWrong ? 'link-refusal' : undefined}
+          placeholder="http://…/?token=…"
+          data-test="link"
+        />
+      </label>
+      <button type="submit" class="button is-main">Go on</button>
+    </div>
     <${Refusal} id="link-refusal" text=${isWrong && 'This is not the link of the workbench that runs now.'} />
   </form>`;
 }
@@ -111,21 +156,31 @@ function Page() {
     isFirst.current = false;
     if (Shown) return;
     const {page} = state;
-    read(page).then((module) => module.default, () => Unread).then((shown) => setPages((old) => ({...old, [page]: shown})));
+    read(page)
+      .then(
+        (module) => module.default,
+        () => Unread,
+      )
+      .then((shown) => setPages((old) => ({...old, [page]: shown})));
   }, [state.page]);
   useEffect(() => {
     document.title = `${PAGES[state.page]} · ${state.rig.name} · sonolube`;
   }, [state.page, state.rig.name]);
   if (fault) return html`<${Broken} again=${clear} />`;
-  return Shown ? html`<${Shown} />` : html`<${Sheet} title=${PAGES[state.page]}><${Loading}>Reading the page…<//><//>`;
+  if (Shown) return html`<${Shown} />`;
+  return html`<${Sheet} title=${PAGES[state.page]}><${Loading}>Reading the page…<//><//>`;
 }
 
 const Unread = () => html`<${Sheet} title="No page">
-  <${Warning}>This page could not be read from the workbench. <a href="">Read it again</a><//><//>`;
+  <${Warning}>This page could not be read from the workbench. <a href="">Read it again</a><//>
+<//>`;
 
 const Broken = ({again}) => html`<${Sheet} title="No answer">
-  <${Warning}><p><strong>This page made a mistake.</strong> What you typed is in the address of this page and not lost.</p>
-    <${Button} onClick=${again}>Draw it again<//><//><//>`;
+  <${Warning}>
+    <p><strong>This page made a mistake.</strong> What you typed is in the address of this page and not lost.</p>
+    <${Button} onClick=${again}>Draw it again<//>
+  <//>
+<//>`;
 
 const BETWEEN = 5000; // ms between looks whether a run is at work
 
@@ -133,7 +188,13 @@ const BETWEEN = 5000; // ms between looks whether a run is at work
 function AtWork() {
   const [Stop, setStop] = useState(null);
   const look = async () => {
-    if (!Stop && (await ask('api/start')).content?.is_running) setStop(await read('lab', './lab/stop.js').then((module) => () => module.default, () => null));
+    if (!Stop && (await ask('api/start')).content?.is_running)
+      setStop(
+        await read('lab', './lab/stop.js').then(
+          (module) => () => module.default,
+          () => null,
+        ),
+      );
   };
   useEvents(['runstart'], look);
   useEffect(() => {

@@ -1,4 +1,7 @@
-/** Left column: which rig, its drawing, and its entries as fields; and the frame of a page that has it beside its answer. */
+/**
+ * Left column: which rig, its drawing, and its entries as fields; and the frame of a page that has it beside its
+ * answer.
+ */
 import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {useReply} from './api.js';
 import {Field, focusField, spreadKey} from './fields.js';
@@ -18,9 +21,15 @@ const PLACES = {
 /** Last view that was read and its rig, so that a page that opens shows it at once. */
 let last = {view: null, rig: {}};
 
-/** The rig of the state as the server shows it: title, fields, drawing, assumptions, names of rigs; `view` is null where refused. */
+/**
+ * The rig of the state as the server shows it: title, fields, drawing, assumptions, names of rigs; `view` is null where
+ * refused.
+ */
 export function useRig() {
-  const {state: {rig}, isMoving} = useApp();
+  const {
+    state: {rig},
+    isMoving,
+  } = useApp();
   const asked = useRef(rig);
   if (!isMoving || rig.name !== asked.current.name) asked.current = rig; // values that move are not asked about
   const {content, failure, refused, isWaiting, of} = useReply('rig', rig.name ? 'api/rig' : null, {rig: asked.current});
@@ -38,20 +47,34 @@ const tableOf = (field) => field.key.slice(0, field.key.lastIndexOf('.'));
 export function RigChoice({view}) {
   const {state} = useApp();
   const own = state.rig.text !== undefined;
-  const names = [...new Set([...(own ? [state.rig.name] : []), ...(view?.rigs ?? last.view?.rigs ?? []), state.rig.name])].filter(Boolean);
+  const names = [
+    ...new Set([...(own ? [state.rig.name] : []), ...(view?.rigs ?? last.view?.rigs ?? []), state.rig.name]),
+  ].filter(Boolean);
   const choices = names.map((name) => (own && name === state.rig.name ? ['', `${name} (own file)`] : [name, name]));
-  const choose = (event) => change({rig: {name: event.target.value, changes: {}}, view: {pin: null, disc: null, runs: null, lost: null}});
+  const choose = (event) =>
+    change({rig: {name: event.target.value, changes: {}}, view: {pin: null, disc: null, runs: null, lost: null}});
   return html`<div class="rig-choice">
-    <div class="row"><label for="rig-name" class="grow">Rig</label>
+    <div class="row">
+      <label for="rig-name" class="grow">Rig</label>
       <${FileButton} accept=".toml" label="Rig file" onFile=${openRig} test="rig-file" data-test="open-rig">Open…<//>
       <a class="button" href=${addressOf('new')}>New…</a>
     </div>
     <${Select} id="rig-name" choices=${choices} value=${own ? '' : state.rig.name} onChange=${choose} data-test="rig" />
     ${view && html`<p class="hint" data-test="rig-title">${view.title}</p>`}
-    ${isOfTab(state.rig.text) && html`<p class="hint" role="status" data-test="of-tab">This file is too long for a link: it stays in this tab only.
-      Take it away as TOML to keep it.</p>`}
-    <${Refusal} role="alert" data-test="lost" text=${state.view.lost
-      && `The file of ${state.view.lost} is not in this link and no longer in this browser: open it again.`} />
+    ${
+      isOfTab(state.rig.text) &&
+      html`<p class="hint" role="status" data-test="of-tab">
+        This file is too long for a link: it stays in this tab only. Take it away as TOML to keep it.
+      </p>`
+    }
+    <${Refusal}
+      role="alert"
+      data-test="lost"
+      text=${
+        state.view.lost &&
+        `The file of ${state.view.lost} is not in this link and no longer in this browser: open it again.`
+      }
+    />
   </div>`;
 }
 
@@ -65,10 +88,18 @@ function Value({field, text}) {
     event.preventDefault();
     focusField(field.key);
   };
-  return html`<g role="button" tabindex="0" class="schematic-value" aria-label=${`${shown}, ${field.label}. Edit`}
-    onClick=${edit} onKeyDown=${edit} data-test=${`drawn:${field.key}`}>
+  return html`<g
+    role="button"
+    tabindex="0"
+    class="schematic-value"
+    aria-label=${`${shown}, ${field.label}. Edit`}
+    onClick=${edit}
+    onKeyDown=${edit}
+    data-test=${`drawn:${field.key}`}
+  >
     <rect x=${anchor === 'end' ? x - width + 5 : x - 5} y=${y - 13} width=${width} height="18" rx="4" />
-    <text x=${x} y=${y} text-anchor=${anchor}>${shown}</text></g>`;
+    <text x=${x} y=${y} text-anchor=${anchor}>${shown}</text>
+  </g>`;
 }
 
 /** Arrows of the vibration by its direction; across the sliding it points out of the drawing. */
@@ -80,24 +111,44 @@ const VIBRATIONS = {
 };
 
 /** Drawing of a rig with its values; a click on a value opens its field. */
-const Schematic = ({drawing, fields, rig}) => html`<svg class="schematic" viewBox="0 0 270 172" role="group" aria-label="Drawing of the rig with its values">
-    <g class="schematic-lines" aria-hidden="true">
-      ${drawing.has_structure && html`<path d="M20 62 H112" class="thick" /><path d="M20 52 v20 M14 54 l6 6 M14 62 l6 6 M14 70 l6 6" />`}
-      <path d="M135 6 v22 m-4 -6 4 6 4 -6 M96 150 H166 m-6 -4 6 4 -6 4" class="force" />
-      <path d=${VIBRATIONS[drawing.direction] ?? VIBRATIONS.along} class="force" />
-      ${drawing.direction !== 'normal' && html`<text x="194" y="108">${drawing.direction}</text>`}
-      <rect x="112" y="32" width="46" height="52" rx="3" class="part" />
-      ${drawing.has_drive && html`<path d="M112 42 H158 M112 50 H158 M112 58 H158 M112 66 H158 M112 74 H158" class="thin" />
-        <path d="M88 36 q4 -8 8 0 t8 0 M104 36 H112" class="wave" />`}
-      <path d="M118 84 H152 V100 L144 112 H126 L118 100 Z" class="part is-pin" />
-      <path d="M126 112 H144" class="contact" />
-      <path d="M74 103 L122 111" class="thin" />
-      <rect x="40" y="113" width="190" height="20" rx="3" class="part is-disc" />
-    </g>
-    ${fields.filter(({key}) => key in PLACES).map((field) => html`<${Value} key=${field.key} field=${field} text=${textOf(rig, field)} />`)}
-  </svg>`;
+const Schematic = ({
+  drawing,
+  fields,
+  rig,
+}) => html`<svg class="schematic" viewBox="0 0 270 172" role="group" aria-label="Drawing of the rig with its values">
+  <g class="schematic-lines" aria-hidden="true">
+    ${
+      drawing.has_structure &&
+      html`<path d="M20 62 H112" class="thick" /><path d="M20 52 v20 M14 54 l6 6 M14 62 l6 6 M14 70 l6 6" />`
+    }
+    <path d="M135 6 v22 m-4 -6 4 6 4 -6 M96 150 H166 m-6 -4 6 4 -6 4" class="force" />
+    <path d=${VIBRATIONS[drawing.direction] ?? VIBRATIONS.along} class="force" />
+    ${drawing.direction !== 'normal' && html`<text x="194" y="108">${drawing.direction}</text>`}
+    <rect x="112" y="32" width="46" height="52" rx="3" class="part" />
+    ${
+      drawing.has_drive &&
+      html`
+        <path d="M112 42 H158 M112 50 H158 M112 58 H158 M112 66 H158 M112 74 H158" class="thin" />
+        <path d="M88 36 q4 -8 8 0 t8 0 M104 36 H112" class="wave" />
+      `
+    }
+    <path d="M118 84 H152 V100 L144 112 H126 L118 100 Z" class="part is-pin" />
+    <path d="M126 112 H144" class="contact" />
+    <path d="M74 103 L122 111" class="thin" />
+    <rect x="40" y="113" width="190" height="20" rx="3" class="part is-disc" />
+  </g>
+  ${fields
+    .filter(({key}) => key in PLACES)
+    .map((field) => html`<${Value} key=${field.key} field=${field} text=${textOf(rig, field)} />`)}
+</svg>`;
 
-/** Make the text of a rig file the rig of the state, and go to a page. @param {string} name @param {string} text @param {string} [page] @returns {Promise<void>} */
+/**
+ * Make the text of a rig file the rig of the state, and go to a page.
+ * @param {string} name
+ * @param {string} text
+ * @param {string} [page]
+ * @returns {Promise<void>}
+ */
 export async function openRigText(name, text, page = undefined) {
   await pack(text);
   change({...(page && {page}), rig: {name, text, changes: {}}, view: {lost: null}});
@@ -107,7 +158,9 @@ const openRig = async (file) => openRigText(file.name.replace(/\.toml$/i, ''), a
 
 /** Rig with its drawing and fields; `extra` stands below those of the operating point. */
 export function RigPanel({extra}) {
-  const {state: {rig}} = useApp();
+  const {
+    state: {rig},
+  } = useApp();
   const {view, failure, refused} = useRig();
   const isAnswered = failure && ['refused', 'busy'].includes(failure.kind); // else the head says it
   const faults = new Map([...(isAnswered ? failure.faults : []), ...refused].map((fault) => [fault.key, fault.text]));
@@ -122,10 +175,20 @@ export function RigPanel({extra}) {
   useEffect(() => {
     if (isAll) entries.current.open = true; // an entry beyond the operating point is refused
   }, [isAll]);
-  const list = (some) => some.map((field) => html`<${Field} key=${`${rig.name} ${field.key}`} field=${field}
-    text=${textOf(rig, field)} spread=${rig.changes[spreadKey(field.key)]} isChanged=${field.key in rig.changes}
-    refusal=${faults.get(field.key)} spreadRefusal=${faults.get(spreadKey(field.key))} onText=${onText}
-    onSettle=${settle} />`);
+  const list = (some) =>
+    some.map(
+      (field) => html`<${Field}
+        key=${`${rig.name} ${field.key}`}
+        field=${field}
+        text=${textOf(rig, field)}
+        spread=${rig.changes[spreadKey(field.key)]}
+        isChanged=${field.key in rig.changes}
+        refusal=${faults.get(field.key)}
+        spreadRefusal=${faults.get(spreadKey(field.key))}
+        onText=${onText}
+        onSettle=${settle}
+      />`,
+    );
   const count = Object.keys(rig.changes).length;
   return html`<aside class="rig" aria-label="Rig" data-test="rig-panel">
     <${RigChoice} view=${view} />
@@ -133,19 +196,41 @@ export function RigPanel({extra}) {
     ${view && html`<${Schematic} drawing=${view.drawing} fields=${fields} rig=${rig} />`}
     ${homeless.map(([key, text]) => html`<${Refusal} key=${key} text=${text} role="alert" data-test="rig-refusal" />`)}
     <div class="fields">${list(first)}</div>
-    ${count > 0 && html`<${Button} kind="button is-quiet" onClick=${() => change({rig: {...rig, changes: {}}})} data-test="reset-all">
-      Take back ${count === 1 ? 'the change' : `all ${count} changes`}<//>`}
+    ${
+      count > 0 &&
+      html`<${Button}
+        kind="button is-quiet"
+        onClick=${() => change({rig: {...rig, changes: {}}})}
+        data-test="reset-all"
+      >
+        Take back ${count === 1 ? 'the change' : `all ${count} changes`}
+      <//>`
+    }
     ${extra}
-    ${others.length > 0 && html`<details ref=${entries} class="all-entries" data-test="all-entries"><summary>All entries</summary>
-      ${[...new Set(others.map(tableOf))].map((table) => html`<fieldset key=${table} class="fields"><legend>${table}</legend>
-        ${list(others.filter((field) => tableOf(field) === table))}</fieldset>`)}</details>`}
+    ${
+      others.length > 0 &&
+      html`<details ref=${entries} class="all-entries" data-test="all-entries">
+        <summary>All entries</summary>
+        ${[...new Set(others.map(tableOf))].map(
+          (table) => html`<fieldset key=${table} class="fields">
+            <legend>${table}</legend>
+            ${list(others.filter((field) => tableOf(field) === table))}
+          </fieldset>`,
+        )}
+      </details>`
+    }
     ${view?.source && html`<p class="hint source">Source: ${view.source}</p>`}
   </aside>`;
 }
 
-/** Frame of a page with the rig: the lead above its answer (sticky on narrow screens), the rig, the answer; `onFile` takes what is dropped beside a rig. */
+/**
+ * Frame of a page with the rig: the lead above its answer (sticky on narrow screens), the rig, the answer; `onFile`
+ * takes what is dropped beside a rig.
+ */
 export function Workspace({lead, extra, onFile, children}) {
-  const isDropping = useDrop((files) => files.forEach((file) => (/\.toml$/i.test(file.name) ? openRig : onFile)?.(file)));
+  const isDropping = useDrop((files) =>
+    files.forEach((file) => (/\.toml$/i.test(file.name) ? openRig : onFile)?.(file)),
+  );
   return html`<div class="workspace">
     <div class="lead" id="answer" tabindex="-1">${lead}</div>
     <${RigPanel} extra=${extra} />

@@ -9,8 +9,15 @@ import {useLayoutEffect, useState} from '../vendor/htm-preact-3.1.1.js';
 
 /** Pages by their names in an address, with their titles. */
 export const PAGES = {
-  predict: 'Predict', explore: 'Explore', data: 'Data', modes: 'Modes', design: 'Design', lab: 'Lab', jobs: 'Jobs',
-  dissertation: 'Dissertation', new: 'New rig',
+  predict: 'Predict',
+  explore: 'Explore',
+  data: 'Data',
+  modes: 'Modes',
+  design: 'Design',
+  lab: 'Lab',
+  jobs: 'Jobs',
+  dissertation: 'Dissertation',
+  new: 'New rig',
 };
 const STEPS = 100; // of undo
 const LONGEST_TEXT = 8192; // characters of a compressed rig file that a link holds
@@ -30,7 +37,13 @@ const packed = new Map();
 
 const tell = () => listeners.forEach((listener) => listener());
 
-/** Value that a store of the browser holds, or is given; a full or forbidden store forgets, no more. @param {string} store @param {string} name @param {string} [value] @returns {string|null} */
+/**
+ * Value that a store of the browser holds, or is given; a full or forbidden store forgets, no more.
+ * @param {string} store
+ * @param {string} name
+ * @param {string} [value]
+ * @returns {string|null}
+ */
 export function stored(store, name, value) {
   try {
     if (value !== undefined) globalThis[store].setItem(name, value);
@@ -47,7 +60,8 @@ const views = JSON.parse(stored('sessionStorage', 'views') ?? '{}');
 function remember() {
   const {page, view} = state;
   views[page] = view;
-  if (WITH_RIG.includes(page)) WITH_RIG.forEach((each) => SHARED.forEach((name) => (views[each] = present({...views[each], [name]: view[name]}))));
+  if (WITH_RIG.includes(page))
+    WITH_RIG.forEach((each) => SHARED.forEach((name) => (views[each] = present({...views[each], [name]: view[name]}))));
   stored('sessionStorage', 'views', JSON.stringify(views));
 }
 
@@ -62,9 +76,14 @@ export function useListening(to) {
 }
 
 /** Text as bytes through a stream of the browser, as base64url or back. */
-const through = async (stream, bytes) => new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
+const through = async (stream, bytes) =>
+  new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
 
-/** Compress the text of a rig so that a link can hold it, and give its code; a long one is kept by this tab only. @param {string} text @returns {Promise<string>} */
+/**
+ * Compress the text of a rig so that a link can hold it, and give its code; a long one is kept by this tab only.
+ * @param {string} text
+ * @returns {Promise<string>}
+ */
 export async function pack(text) {
   const bytes = await through(new CompressionStream('deflate-raw'), new TextEncoder().encode(text));
   const binary = Array.from(bytes, (byte) => String.fromCharCode(byte)).join('');
@@ -80,11 +99,19 @@ export async function pack(text) {
 /** Whether the text of a rig is too long for a link. @param {string} [text] @returns {boolean} */
 export const isOfTab = (text) => Boolean(packed.get(text)?.startsWith(KEPT_PREFIX));
 
-/** Text of a code of `pack`; undefined where this tab no longer keeps it. @param {string} code @returns {Promise<string|undefined>} */
+/**
+ * Text of a code of `pack`; undefined where this tab no longer keeps it.
+ * @param {string} code
+ * @returns {Promise<string|undefined>}
+ */
 export async function unpack(code) {
   const isKept = code.startsWith(KEPT_PREFIX);
-  const bytes = isKept ? null : Uint8Array.from(atob(code.replaceAll('-', '+').replaceAll('_', '/')), (letter) => letter.charCodeAt(0));
-  const text = isKept ? stored('sessionStorage', code) : new TextDecoder().decode(await through(new DecompressionStream('deflate-raw'), bytes));
+  const bytes = isKept
+    ? null
+    : Uint8Array.from(atob(code.replaceAll('-', '+').replaceAll('_', '/')), (letter) => letter.charCodeAt(0));
+  const text = isKept
+    ? stored('sessionStorage', code)
+    : new TextDecoder().decode(await through(new DecompressionStream('deflate-raw'), bytes));
   if (text !== undefined) packed.set(text, code);
   return text;
 }
@@ -124,7 +151,8 @@ export async function decode(of) {
 export const present = (entries) => Object.fromEntries(Object.entries(entries).filter(([, value]) => value != null));
 
 /**
- * Change parts of the state; entries of `view` and `rig.changes` that are null are removed. With `replace` (a value that moves) there is no entry of history until `settle` or the next change.
+ * Change parts of the state; entries of `view` and `rig.changes` that are null are removed. With `replace` (a value
+ * that moves) there is no entry of history until `settle` or the next change.
  * @param {Partial<State>} partial
  */
 export function change({page = state.page, rig = state.rig, view}, {replace = false} = {}) {
@@ -160,8 +188,14 @@ function enter(to) {
   return true;
 }
 
-/** Set an entry of the rig, or take its change back with null; options as of `change`. @param {string} key @param {string|null} text @param {object} [options] */
-export const setEntry = (key, text, options) => change({rig: {...state.rig, changes: {...state.rig.changes, [key]: text}}}, options);
+/**
+ * Set an entry of the rig, or take its change back with null; options as of `change`.
+ * @param {string} key
+ * @param {string|null} text
+ * @param {object} [options]
+ */
+export const setEntry = (key, text, options) =>
+  change({rig: {...state.rig, changes: {...state.rig.changes, [key]: text}}}, options);
 
 async function step(from, onto) {
   settle();
@@ -184,7 +218,11 @@ export const addressOf = (page, view = {}) => `#${encode({page, rig: state.rig, 
 /** Address of a page as it was left, for a link. @param {string} page @returns {string} */
 export const addressAsLeft = (page) => addressOf(page, page === state.page ? state.view : views[page]);
 
-/** Read the state from the address, and follow it; an address without a rig gets the one that was opened. @param {string} opened @returns {Promise<void>} */
+/**
+ * Read the state from the address, and follow it; an address without a rig gets the one that was opened.
+ * @param {string} opened
+ * @returns {Promise<void>}
+ */
 export async function followAddress(opened) {
   const read = async () => {
     const found = await decode(location.hash);

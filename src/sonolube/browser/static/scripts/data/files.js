@@ -20,14 +20,25 @@ export function settingsOf(view) {
   }
 }
 
-/** Change settings of a file; null removes one. Options as of `change`. @param {object} view @param {DataFile} file @param {object} partial @param {object} [options] */
+/**
+ * Change settings of a file; null removes one. Options as of `change`.
+ * @param {object} view
+ * @param {DataFile} file
+ * @param {object} partial
+ * @param {object} [options]
+ */
 export function setOwn(view, file, partial, options) {
   const every = settingsOf(view);
   const own = present({...every[file.upload], ...partial});
   change({view: {own: JSON.stringify({...every, [file.upload]: own})}}, options);
 }
 
-/** Upload files, and show the first of them. @param {object} view @param {File[]} given @returns {Promise<string>} why one was not taken */
+/**
+ * Upload files, and show the first of them.
+ * @param {object} view
+ * @param {File[]} given
+ * @returns {Promise<string>} why one was not taken
+ */
 export async function addFiles(view, given) {
   const lines = [];
   let note = '';
@@ -36,22 +47,51 @@ export async function addFiles(view, given) {
     if (content) lines.push(`${content.upload} ${file.name}`);
     else note = `${file.name}: ${failure.text}`;
   }
-  if (lines.length) change({view: {files: [...(view.files ?? '').split('\n').filter(Boolean), ...lines].join('\n'), file: uploadOf(lines[0]).upload}});
+  if (lines.length)
+    change({
+      view: {
+        files: [...(view.files ?? '').split('\n').filter(Boolean), ...lines].join('\n'),
+        file: uploadOf(lines[0]).upload,
+      },
+    });
   return note;
 }
 
 /** Leave a file out. @param {object} view @param {DataFile} file */
 export function dropFile(view, {upload}) {
   const {[upload]: gone, ...own} = settingsOf(view);
-  const files = filesOf(view).filter((each) => each.upload !== upload).map((each) => `${each.upload} ${each.name}`);
-  change({view: {files: files.join('\n') || null, own: Object.keys(own).length ? JSON.stringify(own) : null, file: view.file === upload ? null : view.file}});
+  const files = filesOf(view)
+    .filter((each) => each.upload !== upload)
+    .map((each) => `${each.upload} ${each.name}`);
+  change({
+    view: {
+      files: files.join('\n') || null,
+      own: Object.keys(own).length ? JSON.stringify(own) : null,
+      file: view.file === upload ? null : view.file,
+    },
+  });
 }
 
-/** What an uploaded file is: kind, columns, and of a recording its length and channels; null asks nothing. @param {DataFile|null} file @param {object} own */
-export const useInfo = (file, own) => useReply(`file ${file?.upload}`, file && 'api/file', file ? {file, ...(own.mapping && {mapping: own.mapping})} : NOTHING);
+/**
+ * What an uploaded file is: kind, columns, and of a recording its length and channels; null asks nothing.
+ * @param {DataFile|null} file
+ * @param {object} own
+ */
+export const useInfo = (file, own) =>
+  useReply(
+    `file ${file?.upload}`,
+    file && 'api/file',
+    file ? {file, ...(own.mapping && {mapping: own.mapping})} : NOTHING,
+  );
 
-/** Answer of the task that measures a file, asked once for all who show it; null asks nothing. @param {DataFile} file @param {Asked|null} asked */
-export const useMeasured = (file, asked) => useReply(`measured ${file.upload}`, asked && taskPath(asked.task), asked?.args ?? NOTHING);
+/**
+ * Answer of the task that measures a file, asked once for all who show it; null asks nothing.
+ * @param {DataFile} file
+ * @param {Asked|null} asked
+ */
+export const useMeasured = (file, asked) =>
+  useReply(`measured ${file.upload}`, asked && taskPath(asked.task), asked?.args ?? NOTHING);
 
 /** A mapping of columns as an argument of a task, by its text. @param {string} [text] @returns {object} */
-export const mappingOf = (text) => (text ? {mapping: {name: 'mapping.toml', content: btoa(String.fromCharCode(...new TextEncoder().encode(text)))}} : {});
+export const mappingOf = (text) =>
+  text ? {mapping: {name: 'mapping.toml', content: btoa(String.fromCharCode(...new TextEncoder().encode(text)))}} : {};

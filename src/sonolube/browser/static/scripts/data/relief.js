@@ -18,15 +18,24 @@ function meshOf({x, y, values, lowest, highest}, scale) {
   const count = x.length;
   const heights = Float32Array.from(values.flat(), (value) => value ?? NaN);
   const positions = new Float32Array(3 * heights.length);
-  heights.forEach((height, at) => positions.set([x[at % count], -y[Math.floor(at / count)], scale * (Number.isNaN(height) ? lowest : height)], 3 * at));
+  heights.forEach((height, at) =>
+    positions.set(
+      [x[at % count], -y[Math.floor(at / count)], scale * (Number.isNaN(height) ? lowest : height)],
+      3 * at,
+    ),
+  );
   const triangles = [];
   for (let at = 0; at < heights.length - count; at += 1) {
     if (at % count === count - 1) continue;
-    for (const corners of [[at, at + count, at + 1], [at + 1, at + count, at + count + 1]]) {
+    for (const corners of [
+      [at, at + count, at + 1],
+      [at + 1, at + count, at + count + 1],
+    ]) {
       if (corners.every((corner) => !Number.isNaN(heights[corner]))) triangles.push(...corners);
     }
   }
-  const shades = heights.map((height) => (height > lowest ? Math.min(height, highest) : lowest)); // lowest where it is not known
+  // lowest where it is not known
+  const shades = heights.map((height) => (height > lowest ? Math.min(height, highest) : lowest));
   return {positions, triangles: new Uint32Array(triangles), values: shades};
 }
 
@@ -37,8 +46,28 @@ export function Relief({content, own, set, label}) {
   const usual = usualStretch(field, ratio);
   const stretch = Number(own.stretch ?? usual);
   const mesh = useMemo(() => meshOf(field, ratio * stretch), [content, stretch]);
-  const choices = STRETCHES.map((each) => [String(each), each === 1 ? 'to scale' : `${each} times as high as they are`]);
-  return html`<div class="scan-stretch"><${Choice} name="stretch" label="Heights are drawn" choices=${choices} value=${String(stretch)}
-      onValue=${(value) => set({stretch: Number(value) === usual ? null : value})} /></div>
-    <${SurfaceView} ...${mesh} names=${NAMES} hasEdges=${false} scale="cividis" quantity="Height" unit=${field.unit} label=${`${label}, heights drawn ${stretch} times as high as they are`} />`;
+  const choices = STRETCHES.map((each) => [
+    String(each),
+    each === 1 ? 'to scale' : `${each} times as high as they are`,
+  ]);
+  return html`
+    <div class="scan-stretch">
+      <${Choice}
+        name="stretch"
+        label="Heights are drawn"
+        choices=${choices}
+        value=${String(stretch)}
+        onValue=${(value) => set({stretch: Number(value) === usual ? null : value})}
+      />
+    </div>
+    <${SurfaceView}
+      ...${mesh}
+      names=${NAMES}
+      hasEdges=${false}
+      scale="cividis"
+      quantity="Height"
+      unit=${field.unit}
+      label=${`${label}, heights drawn ${stretch} times as high as they are`}
+    />
+  `;
 }

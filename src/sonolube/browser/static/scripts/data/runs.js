@@ -4,6 +4,8 @@ import {Columns} from './columns.js';
 import {Use} from './use.js';
 
 export default function Runs({file, own, set, info}) {
-  return html`<${Columns} file=${file} own=${own} set=${set} info=${info} />
-    <${Use} source=${{table: file, ...(own.mapping && {mapping: own.mapping})}} />`;
+  return html`
+    <${Columns} file=${file} own=${own} set=${set} info=${info} />
+    <${Use} source=${{table: file, ...(own.mapping && {mapping: own.mapping})}} />
+  `;
 }

@@ -1,8 +1,9 @@
 /**
- * Channels of a recording over time, moved and zoomed by pointer, wheel and keys above a bar that shows where; its parts as handles.
- * What is drawn while it moves is there already; a finer view is asked for meanwhile.
+ * Channels of a recording over time, moved and zoomed by pointer, wheel and keys above a bar that shows where; its
+ * parts as handles. What is drawn while it moves is there already; a finer view is asked for meanwhile.
  *
- * @typedef {{id: string, kind: string, label: string, from: number, to: number, isFixed?: boolean}} Mark `isFixed` where only its end is moved
+ * @typedef {{id: string, kind: string, label: string, from: number, to: number, isFixed?: boolean}} Mark `isFixed`
+ *   where only its end is moved
  */
 import {html, useEffect, useLayoutEffect, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {ask} from '../api.js';
@@ -11,8 +12,10 @@ import {Refusal, useEvents} from '../parts.js';
 
 const [ROW, BAR, LEFT, RIGHT, BOTTOM, GAP] = [132, 46, 64, 10, 24, 12]; // px
 const COLOURS = ['#0072b2', '#d55e00', '#009e73', '#cc79a7'];
-const [AROUND, COARSE] = [0.5, 4]; // shares of the window that are asked for beside it, and beyond which a view is too coarse
-const [ZOOM, LEAST, PAUSE] = [1.25, 8, 400]; // factor of a step, samples of the shortest window, ms until it counts as at rest
+// shares of the window that are asked for beside it, and beyond which a view is too coarse
+const [AROUND, COARSE] = [0.5, 4];
+// factor of a step, samples of the shortest window, ms until it counts as at rest
+const [ZOOM, LEAST, PAUSE] = [1.25, 8, 400];
 
 /** Views of a recording: of all of it, and of the window with what is beside it. */
 function useViews(file, mapping, [from, to]) {
@@ -87,7 +90,8 @@ function draw(canvas, {whole, near}, {shown, channels, range, width, theme, x}) 
     context.fillStyle = theme.muted;
     context.fillText(text, across ? left : left - 6, across ? high + 16 : top + 4);
   };
-  for (const value of roundTicks(...range, Math.min(width / 90, 9))) tick(short(value, 6), true, x.to(value), 0, 1, bottom);
+  for (const value of roundTicks(...range, Math.min(width / 90, 9)))
+    tick(short(value, 6), true, x.to(value), 0, 1, bottom);
   const isFine = near && near.from <= range[0] && near.to >= range[1];
   shown.forEach((channel, row) => {
     const top = row * (ROW + GAP);
@@ -140,14 +144,27 @@ function Handle({mark, end, x, range, unit, onMove}) {
     onMove(mark, end, value + step * (event.shiftKey ? 0.05 : 0.005) * (range[1] - range[0]), true);
   };
   if (value < range[0] || value > range[1]) return null;
-  return html`<div role="slider" tabindex="0" class=${`trace-handle is-${end} of-${mark.kind}`} style=${{left: `${x.to(value)}px`}} aria-valuenow=${value} aria-valuetext=${`${short(value, 6)} ${unit}`}
-    aria-valuemin=${range[0]} aria-valuemax=${range[1]} aria-label=${`${end === 'from' ? 'Begin' : 'End'} of ${id}, ${label}`} ...${drag} onKeyDown=${press}
-    onBlur=${() => onMove(mark, end, value, false)} data-test=${`handle:${id}:${end}`}></div>`;
+  return html`<div
+    role="slider"
+    tabindex="0"
+    class=${`trace-handle is-${end} of-${mark.kind}`}
+    style=${{left: `${x.to(value)}px`}}
+    aria-valuenow=${value}
+    aria-valuetext=${`${short(value, 6)} ${unit}`}
+    aria-valuemin=${range[0]}
+    aria-valuemax=${range[1]}
+    aria-label=${`${end === 'from' ? 'Begin' : 'End'} of ${id}, ${label}`}
+    ...${drag}
+    onKeyDown=${press}
+    onBlur=${() => onMove(mark, end, value, false)}
+    data-test=${`handle:${id}:${end}`}
+  ></div>`;
 }
 
 /**
- * @param {{file: object, mapping?: string, info: object, shown: number[], marks: Mark[], range: number[]|null, onRange: (range: number[]) => void,
- *   onMark: (mark: Mark, end: string, value: number, isMoving: boolean) => void}} props `range` is where the window was last, `onRange` is told when it rests
+ * @param {{file: object, mapping?: string, info: object, shown: number[], marks: Mark[], range: number[]|null, onRange:
+ *   (range: number[]) => void, onMark: (mark: Mark, end: string, value: number, isMoving: boolean) => void}} props
+ *   `range` is where the window was last, `onRange` is told when it rests
  */
 export function Trace({file, mapping, info, shown, marks, range: given, onRange, onMark}) {
   const limits = [info.begin, info.end];
@@ -187,38 +204,95 @@ export function Trace({file, mapping, info, shown, marks, range: given, onRange,
     rest.current = setTimeout(() => onRange([begin, begin + wide]), PAUSE);
   };
   useEffect(() => () => clearTimeout(rest.current), []);
-  const zoom = (factor, about = (range[0] + range[1]) / 2) => show(about - (about - range[0]) * factor, length * factor);
+  const zoom = (factor, about = (range[0] + range[1]) / 2) =>
+    show(about - (about - range[0]) * factor, length * factor);
   const press = (event) => {
     const step = {
-      ArrowLeft: () => show(range[0] - length / 10, length), ArrowRight: () => show(range[0] + length / 10, length),
-      PageUp: () => show(range[0] - length, length), PageDown: () => show(range[1], length),
-      Home: () => show(limits[0], length), End: () => show(limits[1], length),
-      '+': () => zoom(1 / ZOOM), '-': () => zoom(ZOOM), 0: () => show(limits[0], whole),
+      ArrowLeft: () => show(range[0] - length / 10, length),
+      ArrowRight: () => show(range[0] + length / 10, length),
+      PageUp: () => show(range[0] - length, length),
+      PageDown: () => show(range[1], length),
+      Home: () => show(limits[0], length),
+      End: () => show(limits[1], length),
+      '+': () => zoom(1 / ZOOM),
+      '-': () => zoom(ZOOM),
+      0: () => show(limits[0], whole),
     }[event.key];
     if (!step || event.ctrlKey || event.metaKey) return;
     event.preventDefault();
     step();
   };
   const pan = useDrag((event) => (at) => show(range[0] - (x.back(at) - x.back(event.clientX)), length));
-  const slide = useDrag(({currentTarget}) => (at) => show(over.back(at - currentTarget.getBoundingClientRect().left) - length / 2, length));
+  const slide = useDrag(
+    ({currentTarget}) =>
+      (at) =>
+        show(over.back(at - currentTarget.getBoundingClientRect().left) - length / 2, length),
+  );
   const wheel = (event) => {
     event.preventDefault();
     if (event.shiftKey) show(range[0] + ((event.deltaX || event.deltaY) / width) * length, length);
     else zoom(event.deltaY > 0 ? ZOOM : 1 / ZOOM, x.back(event.clientX - frame.current.getBoundingClientRect().left));
   };
   const text = `${short(range[0], 6)} to ${short(range[1], 6)} ${info.axis.unit}`.trim();
-  const slider = {role: 'slider', tabindex: 0, 'aria-valuemin': limits[0], 'aria-valuemax': limits[1], 'aria-valuenow': range[0], 'aria-valuetext': text, onKeyDown: press};
+  const slider = {
+    role: 'slider',
+    tabindex: 0,
+    'aria-valuemin': limits[0],
+    'aria-valuemax': limits[1],
+    'aria-valuenow': range[0],
+    'aria-valuetext': text,
+    onKeyDown: press,
+  };
   return html`<div class="trace" ref=${frame} data-test="trace" aria-busy=${!isReady && !views.failure}>
     <${Refusal} text=${views.failure?.text} role="alert" />
-    <div class="trace-figure" ...${slider} aria-label=${`Channels over ${info.axis.label}: arrows move, plus and minus zoom`} ...${pan} onWheel=${wheel} data-test="trace-figure"><canvas ref=${figure} /></div>
-    <div class="trace-marks" role="group" aria-label="Parts of the recording" style=${{height: `${shown.length * (ROW + GAP) - GAP}px`}}>${isReady && marks.map((mark) => {
-    const [left, right] = [mark.from, mark.to].map((value) => x.to(Math.min(Math.max(value, range[0]), range[1])));
-    const [handle, wide] = [{mark, x, range, unit: info.axis.unit, onMove: onMark}, right - left];
-    return html`<span key=${mark.id} class=${`trace-mark is-${mark.kind}`} style=${{left: `${left}px`, width: `${Math.max(wide, 0)}px`}}>${wide > 60 ? mark.label : ''}</span>
-        ${!mark.isFixed && html`<${Handle} key=${`${mark.id}<`} end="from" ...${handle} />`}<${Handle} key=${`${mark.id}>`} end="to" ...${handle} />`;
-  })}</div>
-    <div class="trace-bar" ...${slider} aria-label="Part that is shown" ...${slide} data-test="trace-bar"><canvas ref=${bar} />
-      <span class="trace-window" style=${{left: `${over.to(range[0])}px`, width: `${over.to(range[1]) - over.to(range[0])}px`}}></span></div>
-    <p class="hint" data-test="trace-shown">${text}${info.sample_rate ? `, ${short(info.sample_rate)} Hz` : ''}, ${info.samples} samples in all. Drag or arrows move, wheel or + and − zoom, 0 shows all.</p>
+    <div
+      class="trace-figure"
+      ...${slider}
+      aria-label=${`Channels over ${info.axis.label}: arrows move, plus and minus zoom`}
+      ...${pan}
+      onWheel=${wheel}
+      data-test="trace-figure"
+    >
+      <canvas ref=${figure} />
+    </div>
+    <div
+      class="trace-marks"
+      role="group"
+      aria-label="Parts of the recording"
+      style=${{height: `${shown.length * (ROW + GAP) - GAP}px`}}
+    >
+      ${
+        isReady &&
+        marks.map((mark) => {
+          const [left, right] = [mark.from, mark.to].map((value) =>
+            x.to(Math.min(Math.max(value, range[0]), range[1])),
+          );
+          const [handle, wide] = [{mark, x, range, unit: info.axis.unit, onMove: onMark}, right - left];
+          return html`
+            <span
+              key=${mark.id}
+              class=${`trace-mark is-${mark.kind}`}
+              style=${{left: `${left}px`, width: `${Math.max(wide, 0)}px`}}
+            >
+              ${wide > 60 ? mark.label : ''}
+            </span>
+            ${!mark.isFixed && html`<${Handle} key=${`${mark.id}<`} end="from" ...${handle} />`}
+            <${Handle} key=${`${mark.id}>`} end="to" ...${handle} />
+          `;
+        })
+      }
+    </div>
+    <div class="trace-bar" ...${slider} aria-label="Part that is shown" ...${slide} data-test="trace-bar">
+      <canvas ref=${bar} />
+      <span
+        class="trace-window"
+        style=${{left: `${over.to(range[0])}px`, width: `${over.to(range[1]) - over.to(range[0])}px`}}
+      ></span>
+    </div>
+    <p class="hint" data-test="trace-shown">
+      ${text}
+      ${info.sample_rate ? `, ${short(info.sample_rate)} Hz` : ''}, ${info.samples} samples in all. Drag or arrows move,
+      wheel or + and − zoom, 0 shows all.
+    </p>
   </div>`;
 }

@@ -1,4 +1,6 @@
-/** Designs of an optimisation: a figure linked with its table both ways, and the one that is chosen set into the rig. */
+/**
+ * Designs of an optimisation: a figure linked with its table both ways, and the one that is chosen set into the rig.
+ */
 import {html, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {Chart} from '../chart.js';
 import {Button, Card, classes} from '../parts.js';
@@ -7,14 +9,21 @@ import {addressOf, change, useApp} from '../state.js';
 const SAME = 1e-5; // relative distance within which a point is that of a design
 
 /** Place of a design in the linked figure: both objectives of a front, else one over the frequency in kHz. */
-const placeOf = ({objectives, frequency}, {minimise, pareto, front}) => (front.length
-  ? {x: objectives[minimise], y: objectives[pareto]} : {x: 1e-3 * frequency.value, y: objectives[minimise]});
+const placeOf = ({objectives, frequency}, {minimise, pareto, front}) =>
+  front.length
+    ? {x: objectives[minimise], y: objectives[pareto]}
+    : {x: 1e-3 * frequency.value, y: objectives[minimise]};
 
 const isSame = (one, other) => Math.abs(one - other) <= SAME * Math.abs(other);
 
-/** @param {{content: object, linked?: object, isDim: boolean, rig: object}} properties `linked` is the figure with a point a design */
+/**
+ * @param {{content: object, linked?: object, isDim: boolean, rig: object}} properties `linked` is the figure with a
+ *   point a design
+ */
 export function Front({content, linked, isDim, rig}) {
-  const {state: {view}} = useApp();
+  const {
+    state: {view},
+  } = useApp();
   const {answer, blocks} = content;
   const [read, setRead] = useState(null); // number of the design under the pointer, or at the keys
   const [note, setNote] = useState('');
@@ -31,17 +40,66 @@ export function Front({content, linked, isDim, rig}) {
     change({rig: {...rig, changes: {...rig.changes, ...designs[chosen].changes}}});
     setNote(`Design ${chosen + 1} is set into the rig.`);
   };
-  return html`<${Card} id="designs-title" title=${answer.front.length ? 'Designs of the front' : 'Best designs'} isDim=${isDim}>
-    ${linked && html`<${Chart} ...${linked} dimmed=${isDim} onPick=${() => choose(read)} picks="chooses the design" onRead=${onRead} ringed=${places[read ?? chosen]} />`}
-    <div class="table-frame" tabindex="0" role="group" aria-label="Designs"><table class="table" data-test="designs-table"><thead><tr><th scope="col">chosen</th>
-      ${heads.map((head) => html`<th key=${head} scope="col">${head}</th>`)}</tr></thead>
-      <tbody>${rows.map((row, number) => html`<tr key=${number} class=${classes('design', {'is-read': number === read, 'is-chosen': number === chosen})}
-        onPointerEnter=${() => setRead(number)} onPointerLeave=${() => setRead(null)} onClick=${() => choose(number)} data-test=${`row:${number}`}>
-        <td><input type="radio" name="design" checked=${number === chosen} onChange=${() => choose(number)} onFocus=${() => setRead(number)} onBlur=${() => setRead(null)}
-          aria-label=${`Design ${number + 1}: ${row.join(', ')}`} data-test=${`design:${number}`} /></td>
-        ${row.map((cell, place) => html`<td key=${place}>${cell}</td>`)}</tr>`)}</tbody></table></div>
-    <div class="row"><${Button} kind="button is-main" onClick=${use} disabled=${isDim} data-test="use-design">Use design ${chosen + 1}<//>
+  return html`<${Card}
+    id="designs-title"
+    title=${answer.front.length ? 'Designs of the front' : 'Best designs'}
+    isDim=${isDim}
+  >
+    ${
+      linked &&
+      html`<${Chart}
+        ...${linked}
+        dimmed=${isDim}
+        onPick=${() => choose(read)}
+        picks="chooses the design"
+        onRead=${onRead}
+        ringed=${places[read ?? chosen]}
+      />`
+    }
+    <div class="table-frame" tabindex="0" role="group" aria-label="Designs">
+      <table class="table" data-test="designs-table">
+        <thead>
+          <tr>
+            <th scope="col">chosen</th>
+            ${heads.map((head) => html`<th key=${head} scope="col">${head}</th>`)}
+          </tr>
+        </thead>
+        <tbody>
+          ${rows.map(
+            (row, number) => html`<tr
+              key=${number}
+              class=${classes('design', {'is-read': number === read, 'is-chosen': number === chosen})}
+              onPointerEnter=${() => setRead(number)}
+              onPointerLeave=${() => setRead(null)}
+              onClick=${() => choose(number)}
+              data-test=${`row:${number}`}
+            >
+              <td>
+                <input
+                  type="radio"
+                  name="design"
+                  checked=${number === chosen}
+                  onChange=${() => choose(number)}
+                  onFocus=${() => setRead(number)}
+                  onBlur=${() => setRead(null)}
+                  aria-label=${`Design ${number + 1}: ${row.join(', ')}`}
+                  data-test=${`design:${number}`}
+                />
+              </td>
+              ${row.map((cell, place) => html`<td key=${place}>${cell}</td>`)}
+            </tr>`,
+          )}
+        </tbody>
+      </table>
+    </div>
+    <div class="row">
+      <${Button} kind="button is-main" onClick=${use} disabled=${isDim} data-test="use-design">
+        Use design ${chosen + 1}
+      <//>
       <span class="hint">Sets ${Object.keys(designs[chosen].changes).join(', ')}.</span>
-      <span role="status" class="status" data-test="used">${note && html`${note} <a href=${addressOf('predict')}>Predict with it</a>`}</span></div>
+      <span role="status" class="status" data-test="used">
+        ${note && html`${note} <a href=${addressOf('predict')}>Predict with it</a>`}
+      </span>
+    </div>
   <//>`;
 }

@@ -1,12 +1,20 @@
-/** What the laboratory is at: devices, holder and run, asked about while something shows it; and requests to it by this tab. */
+/**
+ * What the laboratory is at: devices, holder and run, asked about while something shows it; and requests to it by this
+ * tab.
+ */
 import {useEffect} from '../../vendor/htm-preact-3.1.1.js';
 import {ask} from '../api.js';
 import {stored, useListening} from '../state.js';
 
 const BETWEEN = 2000; // ms from one look to the next
 /** Name by which the laboratory knows this tab, whatever it shows. */
-const HOLDER = stored('sessionStorage', 'lab-holder') ?? stored('sessionStorage', 'lab-holder', [...crypto.getRandomValues(new Uint8Array(16))]
-  .map((byte) => byte.toString(16).padStart(2, '0')).join(''));
+const HOLDER =
+  stored('sessionStorage', 'lab-holder') ??
+  stored(
+    'sessionStorage',
+    'lab-holder',
+    [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, '0')).join(''),
+  );
 
 let [lab, users, timer] = [null, 0, 0];
 const listeners = new Set();
@@ -29,12 +37,19 @@ export function useLab() {
   useEffect(() => {
     users += 1;
     look();
-    return () => { users -= 1; };
+    return () => {
+      users -= 1;
+    };
   }, []);
   return lab;
 }
 
-/** Ask something of the laboratory as this tab, such as pause; with `isHeld` it takes the laboratory first. @param {string} what @param {object} [more] @returns {Promise<import('../api.js').Reply>} */
+/**
+ * Ask something of the laboratory as this tab, such as pause; with `isHeld` it takes the laboratory first.
+ * @param {string} what
+ * @param {object} [more]
+ * @returns {Promise<import('../api.js').Reply>}
+ */
 export async function send(what, more, {isHeld = false, signal} = {}) {
   const held = isHeld && !lab?.holder.is_me ? await ask('api/lab/hold', {body: {holder: HOLDER}}) : {};
   const reply = held.failure ? held : await ask(`api/lab/${what}`, {body: {holder: HOLDER, ...more}, signal});

@@ -29,7 +29,12 @@ const ADVISED = [
 function argumentsOf(state, isMoving) {
   const {pin, disc, lubricant, runs} = state.view;
   return present({
-    rig: state.rig, runs: runs && uploadOf(runs), pin, disc, lubricant: lubricant ? true : null, draws: isMoving ? MOVING_DRAWS : null,
+    rig: state.rig,
+    runs: runs && uploadOf(runs),
+    pin,
+    disc,
+    lubricant: lubricant ? true : null,
+    draws: isMoving ? MOVING_DRAWS : null,
   });
 }
 
@@ -46,31 +51,57 @@ function numbersOf(answer) {
 /** The numbers on screen. */
 function Numbers({answer}) {
   const {quantities, point} = numbersOf(answer);
-  return html`<dl class="numbers" data-test="numbers">${[...quantities, ...point].map(([label, [median, interval]]) => html`
-    <div key=${label} class="number"><dt>${label}</dt><dd class="median">${median}</dd>
-      ${interval && html`<dd class="interval">${interval}</dd>`}</div>`)}
-  </dl>
-  <p class="hint numbers-note">Median, and below it the interval of ${INTERVAL}.</p>`;
+  return html`
+    <dl class="numbers" data-test="numbers">
+      ${[...quantities, ...point].map(
+        ([label, [median, interval]]) => html`<div key=${label} class="number">
+          <dt>${label}</dt>
+          <dd class="median">${median}</dd>
+          ${interval && html`<dd class="interval">${interval}</dd>`}
+        </div>`,
+      )}
+    </dl>
+    <p class="hint numbers-note">Median, and below it the interval of ${INTERVAL}.</p>
+  `;
 }
 
 /** What would narrow the interval, most first; a click opens what it is about. */
 function Sharpen({answer, beside}) {
   const tables = answer.blocks.filter(isTable);
-  const {heads: [what, left], rows} = tables.find(({heads}) => heads[0] === MEASURES_HEAD) ?? {heads: [], rows: []};
+  const {
+    heads: [what, left],
+    rows,
+  } = tables.find(({heads}) => heads[0] === MEASURES_HEAD) ?? {heads: [], rows: []};
   if (!rows.length) return null;
   return html`<${Card} id="sharpen-title" title="What would sharpen this" data-test="sharpen">
-    <ul class="measures">${rows.map(([label, share]) => {
-    const keys = ADVISED.find(([word]) => word.test(label))?.[1] ?? [];
-    const open = () => (keys[0] === 'runs' ? document.getElementById('own-runs')?.focus() : keys.some(focusField));
-    return html`<li key=${label}><${Button} kind="measure" onClick=${open} disabled=${!keys.length}>
-        <span class="measure-name">${label}</span><span class="measure-share">
-        <meter min="0" max="100" value=${parseFloat(share)} aria-label=${`${left}: ${share}`}></meter>
-        ${share}</span><//></li>`;
-  })}</ul>
-    <p class="hint">${capital(what)}, and what each ${left}. <a href=${addressOf('design', present({part: 'plan', ...beside}))}
-      data-test="plan-tests">Plan these tests</a></p>
-    <details><summary>Least known inputs</summary><${TextTable} ...${tables.at(-1)} kind="table-frame" />
-      ${answer.answer.stiffness_probes?.map((line) => html`<p key=${line} class="hint">${line}</p>`)}</details>
+    <ul class="measures">
+      ${rows.map(([label, share]) => {
+        const keys = ADVISED.find(([word]) => word.test(label))?.[1] ?? [];
+        const open = () => (keys[0] === 'runs' ? document.getElementById('own-runs')?.focus() : keys.some(focusField));
+        return html`<li key=${label}>
+          <${Button} kind="measure" onClick=${open} disabled=${!keys.length}>
+            <span class="measure-name">${label}</span>
+            <span class="measure-share">
+              <meter min="0" max="100" value=${parseFloat(share)} aria-label=${`${left}: ${share}`}></meter>
+              ${share}
+            </span>
+          <//>
+        </li>`;
+      })}
+    </ul>
+    <p class="hint">
+      ${capital(what)}, and what each ${left}. <a
+        href=${addressOf('design', present({part: 'plan', ...beside}))}
+        data-test="plan-tests"
+      >
+        Plan these tests
+      </a>
+    </p>
+    <details>
+      <summary>Least known inputs</summary>
+      <${TextTable} ...${tables.at(-1)} kind="table-frame" />
+      ${answer.answer.stiffness_probes?.map((line) => html`<p key=${line} class="hint">${line}</p>`)}
+    </details>
   <//>`;
 }
 
@@ -82,18 +113,29 @@ function OwnRuns({view, onFile, note}) {
     const schema = content?.paths['/api/tasks/predict'].post.requestBody.content['application/json'].schema;
     setHelp(schema?.properties.runs.description ?? failure.text);
   };
-  return html`<${Card} id="runs-title" title="Own runs" data-test="own-runs"><${RunsChoice} view=${view} onFile=${onFile} />
+  return html`<${Card} id="runs-title" title="Own runs" data-test="own-runs">
+    <${RunsChoice} view=${view} onFile=${onFile} />
     <p class="hint">Or drop a CSV file on this page.</p>
     <${Refusal} text=${note} role="alert" />
-    <details onToggle=${read}><summary>What the file holds</summary><p class="hint">${help || 'Reading…'}</p></details>
+    <details onToggle=${read}>
+      <summary>What the file holds</summary>
+      <p class="hint">${help || 'Reading…'}</p>
+    </details>
   <//>`;
 }
 
 /** Materials and lubrication, which the task takes beside the rig. */
-const Materials = ({view, faultOf, isFirst}) => html`<fieldset class="fields materials"><legend>For wear and heat</legend>
+const Materials = ({view, faultOf, isFirst}) => html`<fieldset class="fields materials">
+  <legend>For wear and heat</legend>
   <${MaterialChoices} view=${view} faultOf=${faultOf} isAsked=${!isFirst} />
-  <label class="check"><input type="checkbox" checked=${Boolean(view.lubricant)} data-test="lubricant"
-    onChange=${(event) => change({view: {lubricant: event.target.checked ? 'yes' : null}})} /> The contact is lubricated</label>
+  <label class="check">
+    <input
+      type="checkbox"
+      checked=${Boolean(view.lubricant)}
+      data-test="lubricant"
+      onChange=${(event) => change({view: {lubricant: event.target.checked ? 'yes' : null}})}
+    /> The contact is lubricated
+  </label>
   <${Refusal} text=${faultOf('lubricant')} />
 </fieldset>`;
 
@@ -103,13 +145,22 @@ function Kept({kept, now, onRemove}) {
   const found = [...kept.map((one) => one.answer), now].map(numbersOf);
   const {quantities, point} = found.at(-1);
   const rows = [
-    ...[...quantities.keys()].map((name) => [name, ...found.map((each) => each.quantities.get(name)).map((of) => (of ? `${of[0]} (${of[1]})` : '–'))]),
+    ...[...quantities.keys()].map((name) => [
+      name,
+      ...found.map((each) => each.quantities.get(name)).map((of) => (of ? `${of[0]} (${of[1]})` : '–')),
+    ]),
     ...[...point.keys()].map((label) => [label, ...found.map((each) => each.point.get(label)?.join(' ') ?? '–')]),
   ];
   return html`<${Card} id="kept-title" title="Kept answers" data-test="kept">
-    <ul class="kept-list">${kept.map((one, place) => html`<li key=${one.id}><span class=${`swatch is-${place}`}></span>
-      <span class="grow">${one.label}</span>
-      <${Button} kind="small" onClick=${() => onRemove(one.id)} aria-label=${`Remove ${one.label}`}>remove<//></li>`)}</ul>
+    <ul class="kept-list">
+      ${kept.map(
+        (one, place) => html`<li key=${one.id}>
+          <span class=${`swatch is-${place}`}></span>
+          <span class="grow">${one.label}</span>
+          <${Button} kind="small" onClick=${() => onRemove(one.id)} aria-label=${`Remove ${one.label}`}>remove<//>
+        </li>`,
+      )}
+    </ul>
     <${TextTable} heads=${['', ...kept.map((one) => one.label), 'now']} rows=${rows} test="differences" />
     <p class="hint">Median, and the interval of ${INTERVAL}.</p>
   <//>`;
@@ -129,12 +180,14 @@ function useKept(state, content) {
   const [, draw] = useState({});
   const fragments = (state.view.kept ?? '').split('\n').filter(Boolean);
   useEffect(() => {
-    fragments.filter((each) => !keptAnswers.has(each)).forEach(async (fragment) => {
-      const of = await decode(fragment);
-      const reply = await inTurn(fragment, () => callTask('predict', argumentsOf(of, false)));
-      if (reply?.content) keptAnswers.set(fragment, {label: labelOf(of), answer: reply.content});
-      draw({});
-    });
+    fragments
+      .filter((each) => !keptAnswers.has(each))
+      .forEach(async (fragment) => {
+        const of = await decode(fragment);
+        const reply = await inTurn(fragment, () => callTask('predict', argumentsOf(of, false)));
+        if (reply?.content) keptAnswers.set(fragment, {label: labelOf(of), answer: reply.content});
+        draw({});
+      });
   }, [state.view.kept]);
   const enter = (some) => change({view: {kept: some.join('\n') || null}});
   const keep = () => {
@@ -173,25 +226,49 @@ export default function Predict() {
   const ownRuns = html`<${OwnRuns} view=${state.view} onFile=${onFile} note=${note} />`;
   const isDim = useLate(isWaiting || Boolean(failure));
   if (!content) {
-    return html`<${Workspace} extra=${extra} lead=${html`<p class="overline">Predict</p><h1 class="statement is-pending">
-      ${failure ? 'No answer yet' : 'Computing the first answer…'}</h1>
-      <${Failure} failure=${failure} shown=${shown} />`}>${failure ? state.view.runs && ownRuns : html`<div class="skeleton" aria-hidden="true"></div>`}<//>`;
+    return html`<${Workspace}
+      extra=${extra}
+      lead=${html`
+        <p class="overline">Predict</p>
+        <h1 class="statement is-pending">
+          ${failure ? 'No answer yet' : 'Computing the first answer…'}
+        </h1>
+        <${Failure} failure=${failure} shown=${shown} />
+      `}
+    >
+      ${failure ? state.view.runs && ownRuns : html`<div class="skeleton" aria-hidden="true"></div>`}
+    <//>`;
   }
   const [outcome, ...others] = content.answer.statement;
   const [first, rest] = outcome.split(/(?<=\.) (?=[A-Z])(.*)/s);
   const chart = content.charts[0];
-  const lead = html`<p class="overline">${content.answer.rig}</p>
-    <h1 class=${classes('statement', {'is-dim': isDim})} aria-live=${isMoving ? 'off' : 'polite'} data-test="statement">${first}</h1>
+  const lead = html`
+    <p class="overline">${content.answer.rig}</p>
+    <h1 class=${classes('statement', {'is-dim': isDim})} aria-live=${isMoving ? 'off' : 'polite'} data-test="statement">
+      ${first}
+    </h1>
     <div class="row lead-tools">
-      <${Button} onClick=${keep} disabled=${isWaiting || Boolean(failure) || refused.length > 0} data-test="keep">Keep this<//>
-      <span class="status" role="status" data-test="status">${isDim && !failure ? 'Computing…' : ''}</span></div>
-    <${Failure} failure=${failure} shown=${shown} /><${RefusedNote} refused=${refused} />`;
+      <${Button} onClick=${keep} disabled=${isWaiting || Boolean(failure) || refused.length > 0} data-test="keep">
+        Keep this
+      <//>
+      <span class="status" role="status" data-test="status">${isDim && !failure ? 'Computing…' : ''}</span>
+    </div>
+    <${Failure} failure=${failure} shown=${shown} />
+    <${RefusedNote} refused=${refused} />
+  `;
   return html`<${Workspace} lead=${lead} extra=${extra} onFile=${onFile}>
     <div class=${isDim ? 'is-dim' : ''} aria-busy=${isWaiting}>
       <${Numbers} answer=${content} />
       <section class="card" aria-label="Friction over amplitude and over speed">
-        ${chart && html`<${Chart} ...${chart} dimmed=${isDim} drag=${dragOf(view, chart.chart)}
-          kept=${kept.map(({label, answer}) => ({label, chart: answer.charts[0].chart}))} />`}
+        ${
+          chart &&
+          html`<${Chart}
+            ...${chart}
+            dimmed=${isDim}
+            drag=${dragOf(view, chart.chart)}
+            kept=${kept.map(({label, answer}) => ({label, chart: answer.charts[0].chart}))}
+          />`
+        }
       </section>
       <${Kept} kept=${kept} now=${content} onRemove=${remove} />
       <div class="columns">
@@ -199,9 +276,14 @@ export default function Predict() {
         <div class="stack">
           <${Card} id="more-title" title="In words">
             ${[rest, ...others].filter(Boolean).map((line) => html`<p key=${line}>${line}</p>`)}
-            ${content.blocks.slice(-2).filter(({kind}) => kind === 'text').map(({text}) => html`<p class="hint" key=${text}>${text}</p>`)}<//>
-          <section class="card" aria-label="Caveats and assumptions"><${Caveats} answer=${content}
-            isMoving=${isMoving || isWaiting} of=${JSON.stringify(reply.of)} /></section>
+            ${content.blocks
+              .slice(-2)
+              .filter(({kind}) => kind === 'text')
+              .map(({text}) => html`<p class="hint" key=${text}>${text}</p>`)}
+          <//>
+          <section class="card" aria-label="Caveats and assumptions">
+            <${Caveats} answer=${content} isMoving=${isMoving || isWaiting} of=${JSON.stringify(reply.of)} />
+          </section>
         </div>
       </div>
     </div>
