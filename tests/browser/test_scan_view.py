@@ -11,7 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings, strategies as st
 from tests.browser.scans import GROOVE_DEPTH, GROOVE_WIDTH, SPACING, groove_heights, write_groove
 
-from sonolube.browser.places import Places
+from sonolube.browser.requests import Places
 from sonolube.browser.scan_view import scan_view, section_view
 from sonolube.browser.worker import encoded, reply
 from sonolube.errors import InvalidInput, SonolubeError
