@@ -55,7 +55,7 @@ lint: $(VENV)/test ## mend what ruff and prettier can mend, then check style, ty
 	$(BIN)/ruff format .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	if command -v npx >/dev/null; then $(call NPX,prettier) prettier --write --log-level warn $(SCRIPTS); fi
+	if command -v npx >/dev/null; then $(call NPX,prettier) prettier --write --log-level warn $(SCRIPTS) && $(call NPX,typescript) tsc --project .; fi
 
 docs: $(VENV)/docs ## build the documentation into out/docs
 	$(RUN) $(BIN)/sphinx-build -W --keep-going -b html docs $(OUT)/docs

@@ -1,4 +1,4 @@
-"""Scripts of the pages, by tools of node: their form by prettier."""
+"""Scripts of the pages, by tools of node: their form by prettier, their types by the compiler of TypeScript."""
 
 import shutil
 import subprocess
@@ -36,3 +36,7 @@ def findings(package: str, *command: str) -> str:
 
 def test_scripts_have_the_form_that_prettier_gives_them() -> None:
     assert findings("prettier", "prettier", "--check", SCRIPTS) == "", "run make lint"
+
+
+def test_types_of_scripts_agree() -> None:
+    assert findings("typescript", "tsc", "--project", ".") == ""

@@ -1,9 +1,9 @@
 /** Let this address in by the pasted link, and read it again with its fragment. */
-document.querySelector('form').addEventListener('submit', async (event) => {
+document.querySelector('form')?.addEventListener('submit', async (event) => {
   event.preventDefault();
-  const link = document.getElementById('token').value;
+  const link = /** @type {HTMLInputElement} */ (document.getElementById('token')).value;
   const token = /[?&]token=([\w-]+)/.exec(link)?.[1] ?? link.trim();
-  const refusal = document.getElementById('refusal');
+  const refusal = /** @type {HTMLElement} */ (document.getElementById('refusal'));
   const answer = await fetch(`./?token=${encodeURIComponent(token)}`, {headers: {'x-status': 'in-header'}}).catch(
     () => null,
   );

@@ -3,7 +3,15 @@ import {html, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {askAgain} from './api.js';
 import {focusField} from './fields.js';
 import {Button, Warning} from './parts.js';
-/** @typedef {{kind: string, rows?: string[][], heads?: string[], text?: string}} Block */
+/**
+ * @typedef {{kind: 'rows'|'table'|'verbatim'|'text', rows?: string[][], heads?: string[], text?: string}} Block
+ * @typedef {{leading_caveats?: string[], caveats?: string[], refusals?: Record<string, string>, assumptions?:
+ *   Record<string, string>}} Stated what an answer says beside its numbers
+ * @typedef {{name: string, caption?: string, chart: import('./chart-scale.js').ChartData, tables?:
+ *   import('./chart.js').ChartTable[]}} Drawing
+ * @typedef {Stated & {blocks: Block[], charts: (Omit<Drawing, 'chart'> & {chart: Drawing['chart']|null})[], answer:
+ *   any, files?: string[]}} Content of the answer of a task
+ */
 
 const MOST = 100; // rows shown before all are asked for
 
@@ -57,7 +65,10 @@ export function TextTable({heads, rows, caption, label, test, kind = 'table-fram
   </div>`;
 }
 
-/** Kinds of a block of an answer. */
+/**
+ * Kinds of a block of an answer.
+ * @type {Record<string, (block: any) => import('../vendor/htm-preact-3.1.1.js').VNode>}
+ */
 const BLOCKS = {
   rows: ({rows}) => html`<${TextTable} rows=${rows} />`,
   table: ({heads, rows}) => html`<${TextTable} heads=${heads} rows=${rows} />`,
@@ -65,13 +76,21 @@ const BLOCKS = {
   text: ({text}) => html`<p>${text}</p>`,
 };
 
+/** Figures of an answer that a page can draw. @param {Content} content @returns {Drawing[]} */
+export const drawings = ({charts}) => charts.flatMap(({chart, ...rest}) => (chart ? [{...rest, chart}] : []));
+
 /** All blocks, or some of them. @param {{blocks: Block[]}} properties */
 export const Blocks = ({blocks}) =>
   blocks.map((block, place) => html`<${BLOCKS[block.kind]} key=${place} ...${block} />`);
 
-/** Lines of now that were not there when the page last rested; `of` names what is answered at rest. */
+/**
+ * Lines of now that were not there when the page last rested; `of` names what is answered at rest.
+ * @param {string[]} lines
+ * @param {boolean} isMoving
+ * @param {string} of
+ */
 function useChanged(lines, isMoving, of) {
-  const rest = useRef({of: null, now: lines, before: lines});
+  const rest = useRef({of: /** @type {string|null} */ (null), now: lines, before: lines});
   if (!isMoving && rest.current.of !== of) {
     rest.current = {of, now: lines, before: rest.current.of === null ? lines : rest.current.now};
   }
@@ -80,12 +99,13 @@ function useChanged(lines, isMoving, of) {
 
 /**
  * Caveats and assumptions of an answer; what changed since the last rest is marked.
- * @param {{answer: Object, isMoving: boolean, of: string, hasFields?: boolean}} props `of` names the request that was
+ * @param {{answer: Stated, isMoving: boolean, of: string, hasFields?: boolean}} props `of` names the request that was
  *   answered; with fields on the page, what is assumed leads to them
  */
 export function Caveats({answer, isMoving, of, hasFields = true}) {
   const {leading_caveats: leading = [], caveats = [], refusals = {}, assumptions = {}} = answer;
-  const lists = [
+  /** @type {[string, string, {line?: string, shown: any}[]][]} */
+  const every = [
     ['Caveats', '', [...leading, ...caveats].map((line) => ({line, shown: line}))],
     ['Refused inputs', '', Object.entries(refusals).map(([name, reason]) => ({shown: `${name}: ${reason}`}))],
     [
@@ -102,8 +122,10 @@ export function Caveats({answer, isMoving, of, hasFields = true}) {
         `,
       })),
     ],
-  ].filter(([, , rows]) => rows.length);
-  const changed = useChanged(lists.flatMap(([, , rows]) => rows.map(({line}) => line)).filter(Boolean), isMoving, of);
+  ];
+  const lists = every.filter(([, , rows]) => rows.length);
+  const lines = lists.flatMap(([, , rows]) => rows.flatMap(({line}) => line ?? []));
+  const changed = useChanged(lines, isMoving, of);
   if (!lists.length) return html`<p class="hint">No caveats, and nothing assumed.</p>`;
   return html`<div class="caveats" data-test="caveats">
     ${lists.map(
@@ -111,7 +133,7 @@ export function Caveats({answer, isMoving, of, hasFields = true}) {
         <h3>${title}</h3>
         <ul class=${`caveat-list${kind}`}>
           ${rows.map(
-            ({line, shown}, at) => html`<li key=${line ?? at} class=${changed.has(line) ? 'is-new' : ''}>
+            ({line = '', shown}, at) => html`<li key=${line || at} class=${changed.has(line) ? 'is-new' : ''}>
               ${changed.has(line) && html`<span class="tag is-new">changed</span> `}
               ${shown}
             </li>`,

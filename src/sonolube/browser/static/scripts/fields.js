@@ -6,6 +6,12 @@ import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {ask, useReply} from './api.js';
 import {Button, classes, FileButton, Refusal, Select} from './parts.js';
 import {change} from './state.js';
+/**
+ * @import {FieldEvent} from './parts.js'
+ * @import {Texts} from './state.js'
+ * @typedef {{key: string, label: string, text: string, unit: string, lowest?: number, highest?: number, help?: string,
+ *   assumed?: string, is_first?: boolean, numbers: Record<string, number>}} RigField as the server describes an entry
+ */
 
 const SLIDER_STEPS = 400;
 const PAUSE = 300; // ms after the last key until a text is read
@@ -14,6 +20,8 @@ const BODIES = [
   ['pin', 'Material of the pin'],
   ['disc', 'Material of the disc'],
 ];
+/** @type {Record<string, number>} */
+const DIRECTIONS = {ArrowUp: 1, ArrowDown: -1};
 export const NOTHING = {};
 const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)(.*)$/is;
 
@@ -29,9 +37,11 @@ export const spreadKey = (key) => `uncertainty.${key}`;
  * @returns {boolean}
  */
 export function focusField(key) {
-  const field = document.getElementById(fieldId(key)) ?? document.querySelector(`input[id^="${fieldId(key)}-"]`);
+  /** @type {HTMLInputElement|null} */
+  const first = document.querySelector(`input[id^="${fieldId(key)}-"]`);
+  const field = /** @type {HTMLInputElement|null} */ (document.getElementById(fieldId(key))) ?? first;
   if (!field) return false;
-  for (let around = field.closest('details'); around; around = around.parentElement.closest('details'))
+  for (let around = field.closest('details'); around; around = around.parentElement?.closest('details') ?? null)
     around.open = true;
   field.scrollIntoView({
     block: 'center',
@@ -49,8 +59,8 @@ export function focusField(key) {
  */
 export function split(text) {
   const found = NUMBER.exec(text);
-  const number = found ? Number(found[1]) : NaN;
-  return Number.isFinite(number) ? {number, rest: found[2], digits: found[1]} : null;
+  const number = Number(found?.[1]);
+  return found && Number.isFinite(number) ? {number, rest: found[2], digits: found[1]} : null;
 }
 
 /**
@@ -61,7 +71,12 @@ export function split(text) {
  */
 export const typed = (number, unit) => [String(Number(number.toPrecision(3))), unit].filter(Boolean).join(' ');
 
-/** Text with its number one step up or down: one in its second digit, or ten of these. */
+/**
+ * Text with its number one step up or down: one in its second digit, or ten of these.
+ * @param {string} text
+ * @param {number} direction
+ * @param {boolean} isLarge
+ */
 function stepped(text, direction, isLarge) {
   const parts = split(text);
   if (!parts) return text;
@@ -78,22 +93,26 @@ function stepped(text, direction, isLarge) {
 /**
  * Text field that is read after a pause, on Enter and when it is left.
  * @param {{id: string, text: string, unit?: string, onText: (text: string, isMoving: boolean) => void,
- *   onSettle: () => void}} props further ones go to the input
+ *   onSettle: () => void, [name: string]: any}} props further ones go to the input
  */
 export function TextField({id, text, unit = '', onText, onSettle, ...rest}) {
   const [draft, setDraft] = useState(null);
   const timer = useRef(0);
-  const latest = useRef(null);
+  const latest = useRef(/** @type {string|null} */ (null));
   latest.current = draft;
+  /** @param {() => void} work @param {number} pause */
   const later = (work, pause) => {
     clearTimeout(timer.current);
     timer.current = setTimeout(work, pause);
   };
+  /** @param {string|null} typed */
   const put = (typed) => {
     latest.current = typed;
     setDraft(typed);
   };
+  /** @param {string} typed */
   const withUnit = (typed) => (unit && split(typed)?.rest.trim() === '' ? `${typed.trim()} ${unit}` : typed);
+  /** @param {boolean} isFinal */
   const give = (isFinal) => {
     clearTimeout(timer.current);
     if (latest.current !== null && withUnit(latest.current) !== text) onText(withUnit(latest.current), !isFinal);
@@ -104,6 +123,7 @@ export function TextField({id, text, unit = '', onText, onSettle, ...rest}) {
     give(true);
     onSettle();
   };
+  /** @param {FieldEvent} event */
   const type = (event) => {
     put(event.target.value);
     later(() => {
@@ -111,9 +131,10 @@ export function TextField({id, text, unit = '', onText, onSettle, ...rest}) {
       later(onSettle, REST);
     }, PAUSE);
   };
+  /** @param {KeyboardEvent} event */
   const press = (event) => {
     if (event.key === 'Enter') leave();
-    const direction = {ArrowUp: 1, ArrowDown: -1}[event.key];
+    const direction = DIRECTIONS[event.key];
     if (!direction) return;
     const typed = latest.current ?? text;
     const next = stepped(typed, direction, event.shiftKey);
@@ -137,13 +158,18 @@ export function TextField({id, text, unit = '', onText, onSettle, ...rest}) {
   />`;
 }
 
-/** Slider over the usual range of a value, by decades where it spans more than one. */
+/**
+ * Slider over the usual range of a value, by decades where it spans more than one.
+ * @param {{field: RigField, text: string, onText: (text: string, isMoving: boolean) => void, onSettle: () => void}}
+ *   props
+ */
 function Slider({field, text, onText, onSettle}) {
-  const {lowest, highest, unit, label, key} = field;
+  const {lowest = 1, highest = 1, unit, label, key} = field;
   const parts = split(text);
   const place = parts ? Math.log(Math.max(parts.number, lowest) / lowest) / Math.log(highest / lowest) : 0;
+  /** @param {FieldEvent} event */
   const move = (event) => {
-    const number = lowest * (highest / lowest) ** (event.target.value / SLIDER_STEPS);
+    const number = lowest * (highest / lowest) ** (Number(event.target.value) / SLIDER_STEPS);
     onText(typed(number, unit), true);
   };
   return html`<input
@@ -182,8 +208,9 @@ export const refusedBy = (id, refusal) =>
 
 /**
  * Entry of a rig, with its spread.
- * @param {{onText: (key: string, text: string|null, isMoving: boolean) => void}} props `onText` with null takes a
- *   change back
+ * @param {{field: RigField, text: string, spread?: string, isChanged: boolean, refusal?: string, spreadRefusal?:
+ *   string, onText: (key: string, text: string|null, isMoving: boolean) => void, onSettle: () => void}} props `onText`
+ *   with null takes a change back
  */
 export function Field({field, text, spread, isChanged, refusal, spreadRefusal, onText, onSettle}) {
   const id = fieldId(field.key);
@@ -192,6 +219,7 @@ export function Field({field, text, spread, isChanged, refusal, spreadRefusal, o
   const isNumber = hasSlider || split(field.text) !== null;
   const shown = isSpread || spread !== undefined;
   const described = [refusal && `${id}-refusal`, field.help && `${id}-help`].filter(Boolean).join(' ') || undefined;
+  /** @param {string} given @param {boolean} isMoving */
   const give = (given, isMoving) => onText(field.key, given, isMoving);
   const open = () => {
     if (spread !== undefined) onText(spreadKey(field.key), null, false);
@@ -276,18 +304,23 @@ export const uploadOf = (text) => ({name: text.slice(text.indexOf(' ') + 1), upl
 /**
  * Upload of a file that an entry of the view then names: what was refused of the last one, and what takes one.
  * @param {string} entry
+ * @returns {[string, (file?: File) => Promise<void>]}
  */
 export function useFile(entry) {
   const [note, setNote] = useState('');
+  /** @param {File|undefined} file */
   const take = async (file) => {
-    const {content, failure} = file ? await ask('api/uploads', {raw: file}) : {};
-    if (content) change({view: {[entry]: `${content.upload} ${file.name}`}});
-    setNote(failure?.text);
+    const reply = file && (await ask('api/uploads', {raw: file}));
+    if (reply?.content) change({view: {[entry]: `${reply.content.upload} ${file?.name}`}});
+    setNote(reply?.failure?.text ?? '');
   };
   return [note, take];
 }
 
-/** Choices of the materials of pin and disc; `faultOf` gives the refusal of one. */
+/**
+ * Choices of the materials of pin and disc; `faultOf` gives the refusal of one.
+ * @param {{view: Texts, faultOf: (name: string) => string|undefined, isAsked?: boolean}} props
+ */
 export function MaterialChoices({view, faultOf, isAsked = true}) {
   const names = Object.entries(useReply('materials', isAsked ? 'api/materials' : null, NOTHING).content ?? {});
   return BODIES.map(([body, label]) => {
@@ -307,7 +340,10 @@ export function MaterialChoices({view, faultOf, isAsked = true}) {
   });
 }
 
-/** Buttons that choose a table of own runs, and leave it out. */
+/**
+ * Buttons that choose a table of own runs, and leave it out.
+ * @param {{view: Texts, onFile: (file: File) => void}} props
+ */
 export const RunsChoice = ({view, onFile}) => html`<p class="row">
   <${FileButton}
     id="own-runs"

@@ -3,15 +3,16 @@ import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {ask, cancelRequest, useConnection} from './api.js';
 import {Button, capital, Warning} from './parts.js';
 /**
+ * @import {Failure} from './api.js'
  * @typedef {{id: string, task: string, label: string, state: string, created: number, seconds: number, reason?: string,
- *   done?: number, total?: number, stage?: string}} Job
+ *   done?: number, total?: number, stage?: string, request?: {task: string, arguments: object}}} Job
  */
 
 const BETWEEN = 400; // ms from one look at a job to the next
 const MAX_COMPARED = 12; // latest jobs of a task whose arguments are compared
 
-/** @param {Job} [job] @returns {boolean} */
-export const isActive = (job) => ['waiting', 'running', 'running elsewhere'].includes(job?.state);
+/** @param {Job|null} [job] @returns {boolean} */
+export const isActive = (job) => ['waiting', 'running', 'running elsewhere'].includes(job?.state ?? '');
 /** Whether this workbench runs it, and so can stop it. @param {Job} job @returns {boolean} */
 export const isOwn = (job) => job.state !== 'running elsewhere';
 
@@ -24,12 +25,17 @@ export function duration(seconds) {
   return `${Math.floor(seconds / 60)} min ${Math.round(seconds % 60)} s`;
 }
 
-/** The latest job of a task with these arguments that was not stopped; undefined where there is none. */
+/**
+ * The latest job of a task with these arguments that was not stopped; undefined where there is none.
+ * @param {string} task
+ * @param {object} args
+ * @returns {Promise<Job|undefined>}
+ */
 async function found(task, args) {
   const {content} = await ask('api/jobs');
-  const same = (content?.jobs ?? []).filter(
-    (job) => job.task === task && job.state !== 'cancelled' && job.state !== 'interrupted',
-  );
+  /** @type {Job[]} */
+  const jobs = content?.jobs ?? [];
+  const same = jobs.filter((job) => job.task === task && job.state !== 'cancelled' && job.state !== 'interrupted');
   for (const job of same.slice(0, MAX_COMPARED)) {
     const {content: known} = await ask(`api/jobs/${job.id}`);
     if (known && JSON.stringify(known.request.arguments) === JSON.stringify(args)) return known;
@@ -39,19 +45,26 @@ async function found(task, args) {
 
 /**
  * Job of a task with these arguments, and its result; none is sought for null.
- * @returns {{job: Object|null, content: any, isOld: boolean, failure: Object|null, isSought: boolean,
+ * @param {string|null} task
+ * @param {object} args
+ * @returns {{job: Job|null, content: any, isOld: boolean, failure: Failure|null, isSought: boolean,
  *   start: (label: string) => void, cancel: () => void}} `isOld` where the result is of other arguments
  */
 export function useJob(task, args) {
   const key = task === null ? '' : JSON.stringify([task, args]);
-  const [state, setState] = useState({key: '', job: null, failure: null});
-  const [result, setResult] = useState({key: '', content: null});
+  /** @type {{key: string, job: Job|null, failure: Failure|null}} */
+  const none = {key: '', job: null, failure: null};
+  const [state, setState] = useState(none);
+  const [result, setResult] = useState({key: '', content: /** @type {any} */ (null)});
   const {generation} = useConnection();
   const latest = useRef(key);
   latest.current = key;
   const isKnown = state.key === key;
-  const {job} = isKnown ? state : {job: null};
-  const enter = (of, next, failure = null) => latest.current === of && setState({key: of, job: next ?? null, failure});
+  const {job} = isKnown ? state : none;
+  /** @param {string} of @param {Job|null|undefined} next @param {Failure} [failure] */
+  const enter = (of, next, failure) => {
+    if (latest.current === of) setState({key: of, job: next ?? null, failure: failure ?? null});
+  };
   useEffect(() => {
     if (task !== null) found(task, args).then((known) => enter(key, known));
   }, [key, generation]);
@@ -66,13 +79,14 @@ export function useJob(task, args) {
     const timer = setTimeout(
       () =>
         ask(`api/jobs/${job.id}`).then(({content, failure}) => {
-          if (content) enter(key, content);
-          else enter(key, failure.kind === 'refused' ? null : {...job}, failure);
+          if (failure) enter(key, failure.kind === 'refused' ? null : {...job}, failure);
+          else enter(key, content);
         }),
       BETWEEN,
     );
     return () => clearTimeout(timer);
   }, [job]);
+  /** @param {string} path @param {object} body */
   const post = (path, body) => ask(path, {body}).then(({content, failure}) => enter(key, content ?? job, failure));
   return {
     job,
@@ -81,7 +95,7 @@ export function useJob(task, args) {
     failure: isKnown ? state.failure : null,
     isSought: task !== null && !isKnown,
     start: (label) => post('api/jobs', {task, arguments: args, label}),
-    cancel: () => post(`api/jobs/${job.id}/cancel`, {}),
+    cancel: () => job && post(`api/jobs/${job.id}/cancel`, {}),
   };
 }
 

@@ -8,7 +8,11 @@ import {TakeAway} from './take-away.js';
 /** Pages with styles of their own, in `pages/` beside the scripts. */
 const STYLED = new Set(['data', 'modes', 'design', 'lab', 'jobs', 'dissertation']);
 
-/** Module of a page, or another one that has its styles, read with them. */
+/**
+ * Module of a page, or another one that has its styles, read with them.
+ * @param {string} page
+ * @param {string} path
+ */
 function read(page, path = `./pages/${page === 'new' ? 'new-rig' : page}.js`) {
   const module = import(path);
   if (!STYLED.delete(page)) return module;
@@ -22,6 +26,7 @@ const THEMES = ['system', 'light', 'dark'];
 const THEME_KEY = 'sonolube-theme';
 const storedTheme = () => stored('localStorage', THEME_KEY) ?? THEMES[0];
 
+/** @param {string} theme */
 function setTheme(theme) {
   document.documentElement.dataset.theme = theme;
   stored('localStorage', THEME_KEY, theme);
@@ -70,6 +75,7 @@ function Head() {
   </header>`;
 }
 
+/** @param {{name: string, keys: string, step: () => void, can: boolean, kind?: string}} props */
 const Step = ({name, keys, step, can, kind = ''}) => html`<${Button}
   kind="icon"
   onClick=${step}
@@ -90,12 +96,16 @@ const Step = ({name, keys, step, can, kind = ''}) => html`<${Button}
   </svg>
 <//>`;
 
+/** @param {Event} event */
 function skip(event) {
   event.preventDefault();
   document.getElementById('answer')?.focus();
 }
 
-/** Keep the browser from leaving the page for a file that is dropped where no page takes it. */
+/**
+ * Keep the browser from leaving the page for a file that is dropped where no page takes it.
+ * @param {DragEvent} event
+ */
 function stay(event) {
   if (event.dataTransfer?.types.includes('Files')) event.preventDefault();
 }
@@ -114,6 +124,7 @@ function Connection() {
       </p>
     </section>`;
   }
+  /** @param {Event} event */
   const submit = async (event) => {
     event.preventDefault();
     setWrong(!(await enter(link)));
@@ -146,7 +157,7 @@ function Connection() {
 /** Page of the state; its module is read when it is first shown. */
 function Page() {
   const {state} = useApp();
-  const [pages, setPages] = useState({});
+  const [pages, setPages] = useState(/** @type {Record<string, any>} */ ({}));
   const [fault, clear] = useErrorBoundary((reason) => console.error(reason));
   const isFirst = useRef(true);
   const Shown = pages[state.page];
@@ -175,6 +186,7 @@ const Unread = () => html`<${Sheet} title="No page">
   <${Warning}>This page could not be read from the workbench. <a href="">Read it again</a><//>
 <//>`;
 
+/** @param {{again: () => void}} props */
 const Broken = ({again}) => html`<${Sheet} title="No answer">
   <${Warning}>
     <p><strong>This page made a mistake.</strong> What you typed is in the address of this page and not lost.</p>
@@ -205,23 +217,26 @@ function AtWork() {
   return Stop && html`<${Stop} />`;
 }
 
-/** Undo and redo by keys, where no text field has its own. */
+/**
+ * Undo and redo by keys, where no text field has its own.
+ * @param {KeyboardEvent & {target: Element}} event
+ */
 function onKey(event) {
   if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
   if (event.target.matches?.('input[type=text], textarea')) return;
   const key = event.key.toLowerCase();
-  const step = {y: redo, z: event.shiftKey ? redo : undo}[key];
-  if (!step) return;
+  const step = key === 'y' || (key === 'z' && event.shiftKey) ? redo : undo;
+  if (key !== 'y' && key !== 'z') return;
   event.preventDefault();
   step();
 }
 
 async function start() {
   setTheme(storedTheme());
-  const page = /^#\/(\w+)/.exec(location.hash)?.[1];
+  const page = /^#\/(\w+)/.exec(location.hash)?.[1] ?? '';
   read(Object.hasOwn(PAGES, page) ? page : 'predict').catch(() => null); // while the start is asked for
   let reply = await ask('api/start');
-  const root = document.getElementById('app');
+  const root = /** @type {HTMLElement} */ (document.getElementById('app'));
   if (!reply.content) {
     root.replaceChildren();
     render(html`<${Connection} />`, root);

@@ -1,5 +1,6 @@
 /** What several pages draw: buttons, choices, cards, notices; and texts and events that they have in common. */
 import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
+/** @typedef {Event & {target: HTMLInputElement}} FieldEvent */
 
 /** @param {string} name @returns {string} */
 export const words = (name) => String(name).replaceAll('_', ' ');
@@ -59,12 +60,14 @@ export const Section = ({
  */
 export const Card = ({isDim, ...rest}) => html`<${Section} kind=${classes('card', {'is-dim': isDim})} ...${rest} />`;
 
+/** @param {{children: any}} props */
 export const Loading = ({children}) => html`<p class="loading" role="status">${children}</p>`;
 
+/** @param {{children: any, [name: string]: any}} props */
 export const Warning = ({children, ...rest}) =>
   html`<div class="notice is-warning" role="alert" ...${rest}>${children}</div>`;
 
-/** Why something is refused; nothing where it is not. @param {{text?: string, [name: string]: any}} properties */
+/** Why something is refused; nothing where it is not. @param {{text?: string|false, [name: string]: any}} properties */
 export const Refusal = ({text, ...rest}) => (text ? html`<p class="refusal" ...${rest}>${text}</p>` : null);
 
 /**
@@ -74,8 +77,11 @@ export const Refusal = ({text, ...rest}) => (text ? html`<p class="refusal" ...$
  */
 export function FileButton({accept, label, onFile, onFiles, test, children, ...rest}) {
   const chooser = useRef(null);
+  /** @param {FieldEvent} event */
   const take = ({target}) => {
-    if (target.files.length) (onFiles ?? (([file]) => onFile(file)))([...target.files]);
+    const files = [...(target.files ?? [])];
+    if (files.length && onFiles) onFiles(files);
+    else if (files.length) onFile?.(files[0]);
     target.value = ''; // so that the same file can be chosen again
   };
   return html`
@@ -103,6 +109,7 @@ export function useEvents(kinds, listener) {
   const latest = useRef(listener);
   latest.current = listener;
   useEffect(() => {
+    /** @param {Event} event */
     const listen = (event) => latest.current(event);
     kinds.forEach((kind) => addEventListener(kind, listen));
     return () => kinds.forEach((kind) => removeEventListener(kind, listen));

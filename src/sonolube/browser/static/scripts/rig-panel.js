@@ -8,7 +8,18 @@ import {Field, focusField, spreadKey} from './fields.js';
 import {Button, FileButton, Loading, Refusal, Select, useDrop} from './parts.js';
 import {addressOf, change, isOfTab, pack, setEntry, settle, useApp} from './state.js';
 
-/** Where the drawing of a rig shows values. */
+/**
+ * @import {RigField} from './fields.js'
+ * @import {FieldEvent} from './parts.js'
+ * @import {RigState} from './state.js'
+ * @typedef {{title: string, source?: string, rigs: string[], studies: string[], maps: string[], fields: RigField[],
+ *   drawing: {has_structure: boolean, has_drive: boolean, direction: string}}} RigView as the server shows a rig
+ */
+
+/**
+ * Where the drawing of a rig shows values.
+ * @type {Record<string, {x: number, y: number, anchor: string, sign?: string}>}
+ */
 const PLACES = {
   'drive.voltage_peak_to_peak': {x: 8, y: 22, anchor: 'start'},
   'drive.frequency': {x: 8, y: 40, anchor: 'start'},
@@ -19,7 +30,7 @@ const PLACES = {
 };
 
 /** Last view that was read and its rig, so that a page that opens shows it at once. */
-let last = {view: null, rig: {}};
+let last = {view: /** @type {RigView|null} */ (null), rig: /** @type {Partial<RigState>} */ ({})};
 
 /**
  * The rig of the state as the server shows it: title, fields, drawing, assumptions, names of rigs; `view` is null where
@@ -38,12 +49,20 @@ export function useRig() {
   return {view: failure && isOther ? null : last.view, failure, refused, isWaiting};
 }
 
-/** Text of an entry: as it was typed, else as the file has it. */
+/**
+ * Text of an entry: as it was typed, else as the file has it.
+ * @param {RigState} rig
+ * @param {RigField} field
+ */
 const textOf = (rig, field) => rig.changes[field.key] ?? field.text;
 
+/** @param {RigField} field */
 const tableOf = (field) => field.key.slice(0, field.key.lastIndexOf('.'));
 
-/** Chooser of a rig: the examples, the one that was opened, an own file. */
+/**
+ * Chooser of a rig: the examples, the one that was opened, an own file.
+ * @param {{view: RigView|null}} props
+ */
 export function RigChoice({view}) {
   const {state} = useApp();
   const own = state.rig.text !== undefined;
@@ -51,6 +70,7 @@ export function RigChoice({view}) {
     ...new Set([...(own ? [state.rig.name] : []), ...(view?.rigs ?? last.view?.rigs ?? []), state.rig.name]),
   ].filter(Boolean);
   const choices = names.map((name) => (own && name === state.rig.name ? ['', `${name} (own file)`] : [name, name]));
+  /** @param {FieldEvent} event */
   const choose = (event) =>
     change({rig: {name: event.target.value, changes: {}}, view: {pin: null, disc: null, runs: null, lost: null}});
   return html`<div class="rig-choice">
@@ -78,11 +98,15 @@ export function RigChoice({view}) {
   </div>`;
 }
 
-/** Value of an entry beside its part. */
+/**
+ * Value of an entry beside its part.
+ * @param {{field: RigField, text: string}} props
+ */
 function Value({field, text}) {
   const {x, y, anchor, sign = ''} = PLACES[field.key];
   const shown = sign + (text.length > 13 ? `${text.slice(0, 12)}…` : text);
   const width = 7 * shown.length + 10;
+  /** @param {UIEvent & {key?: string}} event */
   const edit = (event) => {
     if (event.type === 'keydown' && event.key !== 'Enter' && event.key !== ' ') return;
     event.preventDefault();
@@ -102,7 +126,10 @@ function Value({field, text}) {
   </g>`;
 }
 
-/** Arrows of the vibration by its direction; across the sliding it points out of the drawing. */
+/**
+ * Arrows of the vibration by its direction; across the sliding it points out of the drawing.
+ * @type {Record<string, string>}
+ */
 const VIBRATIONS = {
   normal: 'M168 90 v22 m-3 -17 3 -5 3 5 m-6 12 3 5 3 -5',
   along: 'M164 104 h24 m-19 -3 -5 3 5 3 m14 -6 5 3 -5 3',
@@ -110,7 +137,10 @@ const VIBRATIONS = {
   torsional: 'M163 106 a13 5 0 0 1 24 0 m-25 -4 1 4 4 0 m21 -4 -1 4 -4 0',
 };
 
-/** Drawing of a rig with its values; a click on a value opens its field. */
+/**
+ * Drawing of a rig with its values; a click on a value opens its field.
+ * @param {{drawing: RigView['drawing'], fields: RigField[], rig: RigState}} props
+ */
 const Schematic = ({
   drawing,
   fields,
@@ -154,16 +184,21 @@ export async function openRigText(name, text, page = undefined) {
   change({...(page && {page}), rig: {name, text, changes: {}}, view: {lost: null}});
 }
 
+/** @param {File} file */
 const openRig = async (file) => openRigText(file.name.replace(/\.toml$/i, ''), await file.text());
 
-/** Rig with its drawing and fields; `extra` stands below those of the operating point. */
+/**
+ * Rig with its drawing and fields; `extra` stands below those of the operating point.
+ * @param {{extra?: any}} props
+ */
 export function RigPanel({extra}) {
   const {
     state: {rig},
   } = useApp();
   const {view, failure, refused} = useRig();
-  const isAnswered = failure && ['refused', 'busy'].includes(failure.kind); // else the head says it
-  const faults = new Map([...(isAnswered ? failure.faults : []), ...refused].map((fault) => [fault.key, fault.text]));
+  const answered = failure && ['refused', 'busy'].includes(failure.kind) ? failure.faults : []; // else the head says it
+  const faults = new Map([...answered, ...refused].map(({key, text}) => [key, text]));
+  /** @param {string} key @param {string|null} text @param {boolean} isMoving */
   const onText = (key, text, isMoving) => setEntry(key, text, {replace: isMoving});
   const fields = view?.fields ?? [];
   const first = fields.filter((field) => field.is_first);
@@ -175,6 +210,7 @@ export function RigPanel({extra}) {
   useEffect(() => {
     if (isAll) entries.current.open = true; // an entry beyond the operating point is refused
   }, [isAll]);
+  /** @param {RigField[]} some */
   const list = (some) =>
     some.map(
       (field) => html`<${Field}
@@ -226,6 +262,7 @@ export function RigPanel({extra}) {
 /**
  * Frame of a page with the rig: the lead above its answer (sticky on narrow screens), the rig, the answer; `onFile`
  * takes what is dropped beside a rig.
+ * @param {{lead: any, extra?: any, onFile?: (file: File) => void, children: any}} props
  */
 export function Workspace({lead, extra, onFile, children}) {
   const isDropping = useDrop((files) =>

@@ -2,12 +2,16 @@
  * State of the workbench: which page, which rig with which changes, and what the page shows. It lies in the fragment of
  * the address, so that a link, a reload or a restart gives the same screen; undo and redo go over the whole of it.
  *
- * @typedef {{name: string, text?: string, changes: Object<string, string>}} RigState
- * @typedef {{page: string, rig: RigState, view: Object<string, string>}} State
+ * @typedef {Record<string, string>} Texts
+ * @typedef {Record<string, string|null>} Edits texts to enter, null for those to remove
+ * @typedef {{name: string, text?: string, changes: Texts}} RigState
+ * @typedef {{page: string, rig: RigState, view: Texts}} State
+ * @typedef {{replace?: boolean}} ChangeOptions
  */
 import {useLayoutEffect, useState} from '../vendor/htm-preact-3.1.1.js';
 
 /** Pages by their names in an address, with their titles. */
+/** @type {Texts} */
 export const PAGES = {
   predict: 'Predict',
   explore: 'Explore',
@@ -39,10 +43,10 @@ const tell = () => listeners.forEach((listener) => listener());
 
 /**
  * Value that a store of the browser holds, or is given; a full or forbidden store forgets, no more.
- * @param {string} store
+ * @param {'sessionStorage'|'localStorage'} store
  * @param {string} name
  * @param {string} [value]
- * @returns {string|null}
+ * @returns {string|undefined}
  */
 export function stored(store, name, value) {
   try {
@@ -75,7 +79,11 @@ export function useListening(to) {
   }, []);
 }
 
-/** Text as bytes through a stream of the browser, as base64url or back. */
+/**
+ * Text as bytes through a stream of the browser, as base64url or back.
+ * @param {CompressionStream|DecompressionStream} stream
+ * @param {Uint8Array<ArrayBuffer>} bytes
+ */
 const through = async (stream, bytes) =>
   new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
 
@@ -105,20 +113,20 @@ export const isOfTab = (text) => Boolean(packed.get(text)?.startsWith(KEPT_PREFI
  * @returns {Promise<string|undefined>}
  */
 export async function unpack(code) {
-  const isKept = code.startsWith(KEPT_PREFIX);
-  const bytes = isKept
-    ? null
-    : Uint8Array.from(atob(code.replaceAll('-', '+').replaceAll('_', '/')), (letter) => letter.charCodeAt(0));
-  const text = isKept
-    ? stored('sessionStorage', code)
-    : new TextDecoder().decode(await through(new DecompressionStream('deflate-raw'), bytes));
+  const read = async () => {
+    const binary = atob(code.replaceAll('-', '+').replaceAll('_', '/'));
+    const bytes = Uint8Array.from(binary, (letter) => letter.charCodeAt(0));
+    return new TextDecoder().decode(await through(new DecompressionStream('deflate-raw'), bytes));
+  };
+  const text = code.startsWith(KEPT_PREFIX) ? stored('sessionStorage', code) : await read();
   if (text !== undefined) packed.set(text, code);
   return text;
 }
 
+/** @param {string} text */
 const quoted = (text) => encodeURIComponent(text).replaceAll('%20', '+').replaceAll('%3A', ':').replaceAll('%2F', '/');
 
-/** Fragment of a state, without its hash. @param {object} of @returns {string} */
+/** Fragment of a state, without its hash. @param {State} of @returns {string} */
 export function encode(of) {
   const parts = [
     ...(of.rig.name ? [['rig', of.rig.name]] : []),
@@ -130,7 +138,7 @@ export function encode(of) {
   return `/${of.page}${query && `?${query}`}`;
 }
 
-/** State of a fragment; what it lacks is empty. @param {string} of @returns {Promise<object>} */
+/** State of a fragment; what it lacks is empty. @param {string} of @returns {Promise<State>} */
 export async function decode(of) {
   const [path, query = ''] = of.replace(/^#/, '').split(/\?(.*)/s);
   const page = path.replace(/^\//, '');
@@ -147,13 +155,20 @@ export async function decode(of) {
   return found;
 }
 
-/** Entries of a record that are not null. @param {object} entries @returns {object} */
-export const present = (entries) => Object.fromEntries(Object.entries(entries).filter(([, value]) => value != null));
+/**
+ * Entries of a record that are not null.
+ * @template T
+ * @param {Record<string, T>} entries
+ * @returns {Record<string, NonNullable<T>>}
+ */
+export const present = (entries) =>
+  /** @type {any} */ (Object.fromEntries(Object.entries(entries).filter(([, value]) => value != null)));
 
 /**
  * Change parts of the state; entries of `view` and `rig.changes` that are null are removed. With `replace` (a value
  * that moves) there is no entry of history until `settle` or the next change.
- * @param {Partial<State>} partial
+ * @param {{page?: string, rig?: {name: string, text?: string, changes: Edits}, view?: Edits}} partial
+ * @param {ChangeOptions} [options]
  */
 export function change({page = state.page, rig = state.rig, view}, {replace = false} = {}) {
   const shown = page === state.page ? state.view : {};
@@ -175,7 +190,10 @@ function commit() {
   tell();
 }
 
-/** Make a fragment that of now, the one before it a step to undo; false where it is the same. */
+/**
+ * Make a fragment that of now, the one before it a step to undo; false where it is the same.
+ * @param {string} to
+ */
 function enter(to) {
   const from = before ?? fragment;
   before = null;
@@ -192,15 +210,16 @@ function enter(to) {
  * Set an entry of the rig, or take its change back with null; options as of `change`.
  * @param {string} key
  * @param {string|null} text
- * @param {object} [options]
+ * @param {ChangeOptions} [options]
  */
 export const setEntry = (key, text, options) =>
   change({rig: {...state.rig, changes: {...state.rig.changes, [key]: text}}}, options);
 
+/** @param {string[]} from @param {string[]} onto */
 async function step(from, onto) {
   settle();
-  if (!from.length) return;
   const to = from.pop();
+  if (to === undefined) return;
   onto.push(fragment);
   state = await decode(to);
   fragment = to;
@@ -213,7 +232,7 @@ async function step(from, onto) {
 export const undo = () => step(past, future);
 export const redo = () => step(future, past);
 
-/** Address of a page with the rig of now, for a link. @param {string} page @param {object} [view] @returns {string} */
+/** Address of a page with the rig of now, for a link. @param {string} page @param {Texts} [view] @returns {string} */
 export const addressOf = (page, view = {}) => `#${encode({page, rig: state.rig, view})}`;
 /** Address of a page as it was left, for a link. @param {string} page @returns {string} */
 export const addressAsLeft = (page) => addressOf(page, page === state.page ? state.view : views[page]);

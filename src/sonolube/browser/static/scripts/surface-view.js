@@ -29,6 +29,17 @@ const FRAGMENT = `#version 300 es
     float rim = smoothstep(0.22, 0.04, abs(normal.z));
     colour = vec4(isEdge ? ink : mix(body, ink, rim), 1.0);
   }`;
+/**
+ * @import {FieldEvent} from './parts.js'
+ * @typedef {Float32Array|number[]} Numbers
+ * @typedef {{turn: number, tilt: number, size: number}} View
+ * @typedef {NonNullable<ReturnType<typeof painterOn>>} Painter
+ * @typedef {{positions: Float32Array, triangles: Uint32Array, values: Float32Array, shape?: Float32Array, amplitude?:
+ *   number, phase?: number, label: string, quantity: string, unit: string, scale?: 'viridis'|'cividis'|'grey', names?:
+ *   string[], hasEdges?: boolean, test?: string}} SurfaceProps `positions` and `shape` have three numbers a vertex;
+ *   `label` names the picture, `quantity` what its colours are, `names` the axes
+ */
+
 const SHADES = 256;
 const AXES = ['x', 'y', 'z'];
 const SHARP = Math.cos(Math.PI / 6); // of the angle between triangles, above which their edge is drawn
@@ -42,7 +53,10 @@ document.head.append(
   Object.assign(document.createElement('link'), {rel: 'stylesheet', href: 'static/pages/surface-view.css'}),
 ); // once, with this module
 
-/** Steps of the view by keys, each with its sign on a button and its name. */
+/**
+ * Steps of the view by keys, each with its sign on a button and its name.
+ * @type {Record<string, [(view: View) => View, string, string]>}
+ */
 const STEPS = {
   ArrowLeft: [(view) => ({...view, turn: view.turn - STEP}), '←', 'Turn to the left'],
   ArrowRight: [(view) => ({...view, turn: view.turn + STEP}), '→', 'Turn to the right'],
@@ -52,9 +66,13 @@ const STEPS = {
   '-': [(view) => sized(view, 1 / ZOOM), '−', 'Smaller'],
   Home: [() => FIRST, '⌂', 'First view'],
 };
+/** @param {View} view @param {number} by @returns {View} */
 const sized = (view, by) => ({...view, size: Math.min(Math.max(view.size * by, FARTHEST), NEAREST)});
 
-/** Lowest and highest coordinates, their middle and the sides between them. */
+/**
+ * Lowest and highest coordinates, their middle and the sides between them.
+ * @param {Float32Array} positions
+ */
 function boxOf(positions) {
   const [low, high] = [
     [Infinity, Infinity, Infinity],
@@ -67,7 +85,10 @@ function boxOf(positions) {
   return {middle: low.map((each, axis) => (each + high[axis]) / 2), sides: high.map((each, axis) => each - low[axis])};
 }
 
-/** Length of the longest vector. */
+/**
+ * Length of the longest vector.
+ * @param {Numbers} vectors
+ */
 function largestOf(vectors) {
   let most = 0;
   for (let at = 0; at < vectors.length; at += 3)
@@ -75,7 +96,11 @@ function largestOf(vectors) {
   return most;
 }
 
-/** Rows to the right, upwards and to the viewer; slender bodies lie, others stand on their z. */
+/**
+ * Rows to the right, upwards and to the viewer; slender bodies lie, others stand on their z.
+ * @param {View} view
+ * @param {number[]} sides
+ */
 function rowsOf({turn, tilt}, [x, y, z]) {
   const order = z > SLENDER * Math.max(x, y) ? [2, 0, 1] : y > x ? [1, 0, 2] : [0, 1, 2];
   const [c, s, cc, ss] = [Math.cos(turn), Math.sin(turn), Math.cos(tilt), Math.sin(tilt)];
@@ -90,11 +115,16 @@ function rowsOf({turn, tilt}, [x, y, z]) {
   );
 }
 
-/** Ends of the edges at which a surface ends or is sharp. */
+/**
+ * Ends of the edges at which a surface ends or is sharp.
+ * @param {Float32Array} positions
+ * @param {Uint32Array} triangles
+ */
 function edgesOf(positions, triangles) {
   const count = positions.length / 3;
   const normals = new Float64Array(triangles.length);
   const open = new Map(); // triangle of each edge by its ends
+  /** @type {number[]} */
   const sharp = [];
   for (let at = 0; at < triangles.length; at += 3) {
     const [a, b, c] = [0, 1, 2].map((corner) => 3 * triangles[at + corner]);
@@ -125,11 +155,12 @@ function painterOn(canvas) {
   const gl = canvas.getContext('webgl2');
   if (!gl || gl.isContextLost()) return null;
   const program = gl.createProgram();
-  for (const [kind, text] of [
-    [gl.VERTEX_SHADER, VERTEX],
-    [gl.FRAGMENT_SHADER, FRAGMENT],
+  for (const {kind, text} of [
+    {kind: gl.VERTEX_SHADER, text: VERTEX},
+    {kind: gl.FRAGMENT_SHADER, text: FRAGMENT},
   ]) {
     const shader = gl.createShader(kind);
+    if (!shader) return null;
     gl.shaderSource(shader, text);
     gl.compileShader(shader);
     gl.attachShader(program, shader);
@@ -137,6 +168,7 @@ function painterOn(canvas) {
   gl.linkProgram(program);
   if (!gl.getProgramParameter(program, gl.LINK_STATUS)) return null;
   gl.useProgram(program);
+  /** @param {string} name */
   const at = (name) => gl.getUniformLocation(program, name);
   const [triangleBuffer, edgeBuffer] = [gl.createBuffer(), gl.createBuffer()];
   gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
@@ -146,13 +178,16 @@ function painterOn(canvas) {
   ])
     gl.texParameteri(gl.TEXTURE_2D, name, value);
   gl.enable(gl.DEPTH_TEST);
+  /** @type {Record<string, WebGLBuffer>} */
   const buffers = {};
   let [triangleCount, edgeCount] = [0, 0];
+  /** @param {WebGLBuffer} buffer @param {Uint32Array} [values] */
   const index = (buffer, values) => {
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, buffer);
     if (values) gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, values, gl.STATIC_DRAW);
   };
   return {
+    /** @param {string} attribute @param {Float32Array} values @param {number} size */
     give(attribute, values, size) {
       const place = gl.getAttribLocation(program, attribute);
       gl.bindBuffer(gl.ARRAY_BUFFER, (buffers[attribute] ??= gl.createBuffer()));
@@ -160,11 +195,13 @@ function painterOn(canvas) {
       gl.enableVertexAttribArray(place);
       gl.vertexAttribPointer(place, size, gl.FLOAT, false, 0, 0);
     },
+    /** @param {Uint32Array} triangles @param {Uint32Array} edges */
     join(triangles, edges) {
       index(triangleBuffer, triangles);
       index(edgeBuffer, edges);
       [triangleCount, edgeCount] = [triangles.length, edges.length];
     },
+    /** @param {string} scale */
     colour(scale) {
       const shades = Uint8Array.from(
         {length: 4 * SHADES},
@@ -172,6 +209,10 @@ function painterOn(canvas) {
       );
       gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, SHADES, 1, 0, gl.RGBA, gl.UNSIGNED_BYTE, shades);
     },
+    /**
+     * @param {{rows: number[][], middle: number[], sides: number[], size: number, motion: number, reach: number,
+     *   ends: number[], ink: number[]}} shown
+     */
     draw({rows, middle, sides, size, motion, reach, ends, ink}) {
       const {width, height} = canvas;
       // of the box as it is seen
@@ -187,14 +228,14 @@ function painterOn(canvas) {
       gl.uniform1f(at('reach'), reach);
       gl.uniform2fv(at('ends'), ends);
       gl.uniform3fv(at('ink'), ink);
-      for (const [buffer, kind, count, isEdge] of [
-        [triangleBuffer, gl.TRIANGLES, triangleCount, 0],
-        [edgeBuffer, gl.LINES, edgeCount, 1],
-      ]) {
+      /** @param {WebGLBuffer} buffer @param {number} kind @param {number} count @param {number} isEdge */
+      const part = (buffer, kind, count, isEdge) => {
         index(buffer);
         gl.uniform1i(at('isEdge'), isEdge);
         gl.drawElements(kind, count, gl.UNSIGNED_INT, 0);
-      }
+      };
+      part(triangleBuffer, gl.TRIANGLES, triangleCount, 0);
+      part(edgeBuffer, gl.LINES, edgeCount, 1);
     },
   };
 }
@@ -202,13 +243,15 @@ function painterOn(canvas) {
 /**
  * Surface of a canvas and its size in pixels, kept through the loss of its context; the painter is undefined at first
  * and null without WebGL2.
+ * @param {import('../vendor/htm-preact-3.1.1.js').Ref<HTMLCanvasElement>} canvas
  */
 function usePainter(canvas) {
-  const [painter, setPainter] = useState(undefined);
+  const [painter, setPainter] = useState(/** @type {Painter|null|undefined} */ (undefined));
   const [size, setSize] = useState([0, 0]);
   useLayoutEffect(() => {
     const element = canvas.current;
     const begin = () => setPainter(painterOn(element));
+    /** @param {Event} event */
     const lose = (event) => {
       event.preventDefault(); // so that it is restored
       setPainter(null);
@@ -227,10 +270,7 @@ function usePainter(canvas) {
 
 /**
  * Surface coloured by a value, at `amplitude * sin(phase)` of its shape; a table of the numbers belongs beside it.
- * @param {{positions: Float32Array, triangles: Uint32Array, values: Float32Array, shape?: Float32Array, amplitude?:
- *   number, phase?: number, label: string, quantity: string, unit: string, scale?: 'viridis'|'cividis'|'grey', names?:
- *   string[], hasEdges?: boolean, test?: string}} props `positions` and `shape` have three numbers a vertex; `label`
- *   names the picture, `quantity` what its colours are, `names` the axes
+ * @param {SurfaceProps} props
  */
 export function SurfaceView({
   positions,
@@ -283,17 +323,20 @@ export function SurfaceView({
       ink: rgb(getComputedStyle(canvas.current).color).map((part) => part / 255),
     });
   }, [painter, size, positions, triangles, values, shape, scale, amplitude, phase, view, theme]);
+  /** @param {WheelEvent} event */
   const wheel = (event) => {
     if (document.activeElement !== canvas.current) return; // the page scrolls
     event.preventDefault();
     setView((old) => sized(old, ZOOM ** (-event.deltaY / 100)));
   };
+  /** @param {KeyboardEvent} event */
   const press = (event) => {
     const step = STEPS[event.key === '=' ? '+' : event.key];
     if (!step || event.ctrlKey || event.metaKey || event.altKey) return;
     event.preventDefault();
     setView(step[0]);
   };
+  /** @param {PointerEvent} event */
   const move = (event) =>
     event.buttons &&
     canvas.current.hasPointerCapture(event.pointerId) &&
@@ -365,7 +408,10 @@ export function SurfaceView({
   </div>`;
 }
 
-/** Directions of x, y and z as they are seen. */
+/**
+ * Directions of x, y and z as they are seen.
+ * @param {{rows: number[][], names: string[]}} props
+ */
 const Directions = ({
   rows,
   names,
@@ -381,7 +427,7 @@ const Directions = ({
 /**
  * Surface that moves along its shape, with its controls: play and pause, phase, slow; still at first where motion is
  * not wanted.
- * @param {object} props as of `SurfaceView`
+ * @param {Omit<SurfaceProps, 'phase'>} props
  */
 export function MovingSurface(props) {
   const [isPlaying, setPlaying] = useState(() => !matchMedia('(prefers-reduced-motion: reduce)').matches);
@@ -390,6 +436,7 @@ export function MovingSurface(props) {
   useEffect(() => {
     if (!isPlaying) return undefined;
     let [last, frame] = [performance.now(), 0];
+    /** @param {number} now */
     const step = (now) => {
       const turned = ((now - last) / 1000) * Math.PI * (isSlow ? 0.1 : 1); // a period takes two seconds
       last = now;
@@ -400,9 +447,10 @@ export function MovingSurface(props) {
     return () => cancelAnimationFrame(frame);
   }, [isPlaying, isSlow]);
   const degrees = Math.round((phase * 180) / Math.PI);
+  /** @param {FieldEvent} event */
   const seek = (event) => {
     setPlaying(false);
-    setPhase((event.target.value * Math.PI) / 180);
+    setPhase((Number(event.target.value) * Math.PI) / 180);
   };
   return html`
     <${SurfaceView} ...${props} phase=${phase} />

@@ -13,7 +13,7 @@ const FORMS = [
   ['report', 'Report (HTML)', 'save'],
 ];
 
-/** @type {{task: string, args: Object}|null} What the page shows. */
+/** What the page shows. @type {{task: string, args: object}|null} */
 let offered = null;
 
 /**
@@ -35,7 +35,7 @@ export function offer(task, args) {
  * @param {{name: string, kind: string, text?: string, base64?: string}} file
  */
 export function save({name, kind, text, base64}) {
-  const content = base64 === undefined ? text : Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+  const content = base64 === undefined ? (text ?? '') : Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
   const address = URL.createObjectURL(new Blob([content], {type: kind}));
   const link = document.createElement('a');
   link.href = address;
@@ -55,6 +55,7 @@ export function TakeAway() {
     if (isEscape) place.current.querySelector('button').focus();
     if (event.key ? isEscape : !place.current.contains(event.target)) setOpen(false);
   });
+  /** @param {string} what @param {string} text */
   const copy = async (what, text) => {
     setShown({what, text});
     const done = await navigator.clipboard?.writeText(text).then(
@@ -63,10 +64,11 @@ export function TakeAway() {
     );
     setNote(done ? `${what}: copied.` : `${what}: copy it from the field below.`);
   };
+  /** @param {string} form @param {string} label @param {string} how */
   const take = async (form, label, how) => {
     setShown(null);
     setNote(`${label}: being made…`);
-    const {content, failure} = await ask('api/take', {body: {form, task: offered.task, arguments: offered.args}});
+    const {content, failure} = await ask('api/take', {body: {form, task: offered?.task, arguments: offered?.args}});
     if (failure) setNote(failure.faults[0]?.text || failure.text);
     else if (how === 'copy') await copy(label, content.text);
     else {

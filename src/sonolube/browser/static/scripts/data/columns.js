@@ -9,19 +9,24 @@ import {Button, FileButton, Refusal, Select} from '../parts.js';
 import {stored} from '../state.js';
 import {save} from '../take-away.js';
 
+/** @param {import('./files.js').Info} info */
 const storeOf = ({columns}) => `columns ${columns.map(({label}) => label).join('|')}`;
 
-/** @param {{file: object, own: object, set: (partial: object) => void, info: object}} props */
+/** @param {Omit<import('./files.js').FileProps, 'asked'>} props */
 export function Columns({file, own, set, info}) {
   const {columns, quantities, reason} = info;
-  const [drafts, setDrafts] = useState({});
+  const [drafts, setDrafts] = useState(/** @type {import('../state.js').Texts} */ ({}));
   const [rows, setRows] = useState(info.rows);
   const [rate, setRate] = useState('');
-  const [failure, setFailure] = useState(null);
+  const [failure, setFailure] = useState(/** @type {import('../api.js').Failure|undefined} */ (undefined));
   const isAsked = Boolean(reason) || columns.some((each) => each.is_asked);
+  /** @param {import('./files.js').Column} column */
   const statementOf = ({label, statement}) => drafts[label] ?? statement;
+  /** @param {string} key */
   const faultOf = (key) => failure?.faults.find((fault) => fault.key === key)?.text;
+  /** @param {string} text */
   const isPlaced = (text) => columns.some((each) => each.label === text);
+  /** @param {string} mapping */
   const keep = (mapping) => {
     stored('sessionStorage', storeOf(info), mapping);
     setDrafts({});

@@ -1,6 +1,6 @@
 /** What is measured of a file: the settings of its task, the answer, and what the rig takes of it. */
 import {html, useEffect} from '../../vendor/htm-preact-3.1.1.js';
-import {Blocks, Caveats, Failure, TextTable} from '../answer.js';
+import {Blocks, Caveats, drawings, Failure, TextTable} from '../answer.js';
 import {Chart} from '../chart.js';
 import {Labelled, refusedBy, TextField} from '../fields.js';
 import {Waiting} from '../job.js';
@@ -9,7 +9,9 @@ import {addressOf, change, settle, useApp} from '../state.js';
 import {offer} from '../take-away.js';
 import {useMeasured} from './files.js';
 
-/** Entries of a record that say something. @param {object} entries @returns {object} */
+/** @import {Own, SetOwn} from './files.js' */
+
+/** Entries of a record that say something. @param {Record<string, any>} entries @returns {Record<string, any>} */
 export const stated = (entries) =>
   Object.fromEntries(
     Object.entries(entries).filter(([, value]) => value !== undefined && value !== null && value !== ''),
@@ -17,7 +19,7 @@ export const stated = (entries) =>
 
 /**
  * Text fields of what is set for a file, each with its refusal.
- * @param {{fields: string[][], own: object, set: (partial: object, options?: object) => void, faults?:
+ * @param {{fields: string[][], own: Own, set: SetOwn, faults?:
  *   import('../api.js').Fault[]}} props `fields` have name, label, and what stands in an empty one
  */
 export const Settings = ({fields, own, set, faults = []}) =>
@@ -60,10 +62,11 @@ export const Choice = ({name, label, choices, value, onValue}) => html`<${Labell
  * @param {number} most
  * @returns {[string, string][]}
  */
-export const countsTo = (none, most) => [
-  ['', none],
-  ...Array.from({length: most}, (_, at) => [String(at + 1), String(at + 1)]),
-];
+export const countsTo = (none, most) =>
+  /** @type {[string, string][]} */ ([
+    ['', none],
+    ...Array.from({length: most}, (_, at) => [String(at + 1), String(at + 1)]),
+  ]);
 
 /**
  * What the rig takes of an answer, and what sets it there.
@@ -92,15 +95,15 @@ function UseInRig({entries, note}) {
 
 /**
  * Answer of the task that measures a file: figures, numbers, caveats, what the rig takes; made anew for another task.
- * @param {{file: import('./files.js').DataFile, asked: import('./files.js').Asked, fields: string[][], own: object,
- *   set: Function, leave?: string[], rigNote: string, isFigureFirst?: boolean, children?: any}} props `leave` names
+ * @param {{file: import('./files.js').DataFile, asked: import('./files.js').Asked|null, fields: string[][], own: Own,
+ *   set: SetOwn, leave?: string[], rigNote: string, isFigureFirst?: boolean, children?: any}} props `leave` names
  *   figures that are shown elsewhere; `children` stand beside the fields
  */
 export function Measured({file, asked, fields, own, set, leave = [], rigNote, isFigureFirst, children}) {
   const {content, failure, isWaiting} = useMeasured(file, asked);
   useEffect(() => (asked ? offer(asked.task, asked.args) : undefined), [JSON.stringify(asked)]);
   const isOld = isWaiting || Boolean(failure);
-  const charts = (content?.charts ?? []).filter(({name, chart}) => chart && !leave.includes(name));
+  const charts = content ? drawings(content).filter(({name}) => !leave.includes(name)) : [];
   const entries = content?.answer.results[0]?.rig_entries;
   return html`
     <${Settings} fields=${fields} own=${own} set=${set} faults=${failure?.faults} />

@@ -13,7 +13,17 @@ import {Trace} from './trace.js';
 import {Use} from './use.js';
 
 const NEEDED = 'needed';
-/** Tasks: title, channels of which one is needed, and settings with what stands in an empty field. */
+/**
+ * @import {Asked, DataFile, FileProps, Info, Own, SetOwn} from './files.js'
+ * @import {ChangeOptions} from '../state.js'
+ * @typedef {{kind: string, from: number, to: number, voltage?: string}} Part of a recording
+ * @typedef {Part & {at: number, id: string, label: string, isFixed?: boolean}} NamedPart
+ */
+
+/**
+ * Tasks: title, channels of which one is needed, and settings with what stands in an empty field.
+ * @type {Record<string, [string, RegExp, string[][]]>}
+ */
 const TASKS = {
   friction: [
     'Friction',
@@ -55,27 +65,36 @@ const PARTS = [
 ];
 const MAX_SHOWN = 3; // channels
 
-/** Task of a recording: the chosen one, else the first that its channels allow. */
+/**
+ * Task of a recording: the chosen one, else the first that its channels allow.
+ * @param {Own} own
+ * @param {Partial<Info>} info
+ * @returns {string}
+ */
 const nameOf = (own, {channels = []}) =>
-  own.task ?? Object.keys(TASKS).find((name) => channels.some((each) => TASKS[name][1].test(each.name)));
+  own.task ?? Object.keys(TASKS).find((name) => channels.some((each) => TASKS[name][1].test(each.name))) ?? '';
 
+/** @param {{from: number, to: number}} part */
 const span = ({from, to}) => `${Number(from.toPrecision(9))}s:${Number(to.toPrecision(9))}s`;
 
 /**
  * What measures a recording; null where something is missing that it needs.
- * @param {import('./files.js').DataFile} file
- * @param {object} own
- * @param {object} info
- * @returns {import('./files.js').Asked|null}
+ * @param {DataFile} file
+ * @param {Own} own
+ * @param {Info} info
+ * @returns {Asked|null}
  */
 export function taskOf(file, own, info) {
   const name = nameOf(own, info);
-  const fields = TASKS[name][2];
+  const [, , fields] = TASKS[name];
   if (fields.some(([key, , empty]) => empty === NEEDED && !own[key])) return null;
   const given = Object.fromEntries(
     fields.map(([key]) => [key, /^(magnets|degree)$/.test(key) && own[key] ? Number(own[key]) : own[key]]),
   );
-  const of = (kind) => (own.marks ?? []).filter((mark) => mark.kind === kind);
+  /** @type {Part[]} */
+  const marks = own.marks ?? [];
+  /** @param {string} kind */
+  const of = (kind) => marks.filter((mark) => mark.kind === kind);
   const steps = of('step').map((mark) => [span(mark), mark.voltage]);
   const parts =
     name !== 'friction'
@@ -89,16 +108,24 @@ export function taskOf(file, own, info) {
   return {task: `measure ${name}`, args: stated({files: file, ...mappingOf(own.mapping), ...given, ...parts})};
 }
 
-/** Steps that the task has found, as marks. */
+/**
+ * Steps that the task has found, as marks.
+ * @param {any} content
+ * @returns {Part[]}
+ */
 const foundSteps = (content) =>
-  (content?.answer.results?.[0]?.tables?.steps?.rows ?? []).map((row) => ({
+  /** @type {any[]} */ (content?.answer.results?.[0]?.tables?.steps?.rows ?? []).map((row) => ({
     kind: 'step',
     from: row.start_time,
     to: row.end_time,
     voltage: `${short(row.voltage_peak_to_peak)} V`,
   }));
 
-/** Marks with their places and names. */
+/**
+ * Marks with their places and names.
+ * @param {Part[]} marks
+ * @returns {NamedPart[]}
+ */
 const named = (marks) =>
   marks.map((mark, at) => ({
     ...mark,
@@ -107,8 +134,12 @@ const named = (marks) =>
     id: `${mark.kind}${marks.slice(0, at).filter(({kind}) => kind === mark.kind).length + 1}`,
   }));
 
-/** Parts of a friction recording: a list with voltages, and what adds one within the window that is shown. */
+/**
+ * Parts of a friction recording: a list with voltages, and what adds one within the window that is shown.
+ * @param {{marks: Part[], isFound: boolean, enter: (some: Part[]) => void, range: number[]}} props
+ */
 function Parts({marks, isFound, enter, range: [from, to]}) {
+  /** @param {string} kind */
   const add = (kind) => {
     // behind those that are there
     const last = Math.max(from, ...(kind === 'part' || isFound ? [] : marks.map((mark) => mark.to)));
@@ -121,6 +152,7 @@ function Parts({marks, isFound, enter, range: [from, to]}) {
     };
     enter([...(isFound && kind !== 'step' ? marks.filter((each) => each.kind !== 'step') : marks), mark]);
   };
+  /** @param {number} at @param {string} voltage */
   const write = (at, voltage) => enter(marks.map((mark, place) => (place === at ? {...mark, voltage} : mark)));
   return html`<div class="data-parts" role="group" aria-label="Parts">
     ${isFound && html`<p class="hint">Steps as found in the voltage; drag an end to state them.</p>`}
@@ -170,14 +202,17 @@ function Parts({marks, isFound, enter, range: [from, to]}) {
   </div>`;
 }
 
+/** @param {FileProps} props */
 export default function Recording({file, own, set, info, asked}) {
   const {content, failure} = useMeasured(file, asked);
   const columns = html`<${Columns} file=${file} own=${own} set=${set} info=${info} />`;
   if (info.reason) return columns;
   const name = nameOf(own, info);
   const hasParts = name === 'friction' && info.axis.name === 'time';
-  const isFound = hasParts && !(own.marks ?? []).some(({kind}) => kind === 'step') && foundSteps(content).length > 0;
-  const marks = [...(own.marks ?? []), ...(isFound ? foundSteps(content) : [])];
+  /** @type {Part[]} */
+  const ownMarks = own.marks ?? [];
+  const isFound = hasParts && !ownMarks.some(({kind}) => kind === 'step') && foundSteps(content).length > 0;
+  const marks = [...ownMarks, ...(isFound ? foundSteps(content) : [])];
   const window = {
     kind: 'window',
     id: 'window',
@@ -186,7 +221,9 @@ export default function Recording({file, own, set, info, asked}) {
     from: info.begin,
     to: info.begin + (split(own.window ?? '2 s')?.number ?? 2),
   };
+  /** @param {Part[]} some @param {ChangeOptions} [options] */
   const enter = (some, options) => set({marks: some.length ? some : null}, options);
+  /** @param {NamedPart} mark @param {string} end @param {number} value @param {boolean} isMoving */
   const onMark = (mark, end, value, isMoving) => {
     if (!isMoving) return settle();
     if (mark.isFixed)
@@ -206,9 +243,12 @@ export default function Recording({file, own, set, info, asked}) {
   const ofTask = info.channels
     .map((_, at) => at)
     .sort(
-      (one, other) => TASKS[name][1].test(info.channels[other].name) - TASKS[name][1].test(info.channels[one].name),
+      (one, other) =>
+        Number(TASKS[name][1].test(info.channels[other].name)) - Number(TASKS[name][1].test(info.channels[one].name)),
     );
+  /** @type {number[]} */
   const shown = own.shown?.length ? own.shown : ofTask.slice(0, MAX_SHOWN);
+  /** @param {number} at */
   const show = (at) => set({shown: shown.includes(at) ? shown.filter((each) => each !== at) : [...shown, at]});
   const conditions = stated(Object.fromEntries(CONDITIONS.map(([key]) => [key, own[key]])));
   return html`
@@ -220,7 +260,7 @@ export default function Recording({file, own, set, info, asked}) {
         shown=${shown}
         marks=${hasParts ? [window, ...named(marks)] : []}
         range=${own.range ?? null}
-        onRange=${(range) => set({range})}
+        onRange=${/** @param {number[]} range */ (range) => set({range})}
         onMark=${onMark}
       />
       ${

@@ -3,17 +3,28 @@ import {html, useMemo} from '../../vendor/htm-preact-3.1.1.js';
 import {SurfaceView} from '../surface-view.js';
 import {Choice} from './measured.js';
 
+/** @typedef {import('../chart-field.js').FieldPart & {lowest: number, highest: number}} Heights */
+
 const STRETCHES = [0, 1, 2, 3, 4, 5].flatMap((power) => [1, 2, 5].map((step) => step * 10 ** power));
 const SHARE = 0.15; // of the longer side that the heights take, where no other stretch is chosen
 const NAMES = ['x', '−y', 'z']; // y runs down the map, away from what is drawn at the top
 
-/** Stretch that shows heights well. */
+/**
+ * Stretch that shows heights well.
+ * @param {Heights} map
+ * @param {number} ratio
+ */
 function usualStretch({x, y, lowest, highest}, ratio) {
-  const wanted = (SHARE * Math.max(x.at(-1) - x[0], y.at(-1) - y[0])) / ((highest - lowest) * ratio || 1);
+  const longer = Math.max(...[x, y].map((axis) => axis[axis.length - 1] - axis[0]));
+  const wanted = (SHARE * longer) / ((highest - lowest) * ratio || 1);
   return STRETCHES.findLast((each) => each <= wanted) ?? STRETCHES[0];
 }
 
-/** Vertices and triangles of the cells of a map, without those that were not measured. */
+/**
+ * Vertices and triangles of the cells of a map, without those that were not measured.
+ * @param {Heights} map
+ * @param {number} scale
+ */
 function meshOf({x, y, values, lowest, highest}, scale) {
   const count = x.length;
   const heights = Float32Array.from(values.flat(), (value) => value ?? NaN);
@@ -39,7 +50,10 @@ function meshOf({x, y, values, lowest, highest}, scale) {
   return {positions, triangles: new Uint32Array(triangles), values: shades};
 }
 
-/** @param {{content: object, own: object, set: Function, label: string}} props `content` as of the view `scan` */
+/**
+ * @param {{content: any, own: import('./files.js').Own, set: import('./files.js').SetOwn, label: string}} props
+ *   `content` as of the view `scan`
+ */
 export function Relief({content, own, set, label}) {
   const [field] = content.chart.panels[0].parts;
   const ratio = content.metres.height / content.metres.across;

@@ -13,6 +13,12 @@ import {save} from '../take-away.js';
 import {Choice, countsTo, Measured, Settings, stated} from './measured.js';
 import {Relief} from './relief.js';
 
+/**
+ * @import {Name, Panel, Ranges} from '../chart-scale.js'
+ * @import {DataFile, FileProps, Own, SetOwn} from './files.js'
+ * @typedef {Record<string, string>} Section its ends with their units
+ */
+
 const LACKING = [
   ['spacing', 'Distance of pixels, or x,y', 'such as 0.5 um'],
   ['length_unit', 'Unit of the lengths', 'such as um'],
@@ -33,7 +39,10 @@ const VIEWS = [
   ['map', 'map'],
   ['relief', 'in 3D'],
 ];
-/** Tasks that measure a scan, each with its title, settings, and the figures that the page shows otherwise. */
+/**
+ * Tasks that measure a scan, each with its title and settings.
+ * @type {Record<string, {title: string, fields: string[][]}>}
+ */
 const TASKS = {
   surface: {
     title: 'roughness',
@@ -51,6 +60,8 @@ const TASKS = {
     ],
   },
 };
+/** @type {Name[]} */
+const AXES = ['x', 'y'];
 const ENDS = [
   ['from', 'Beginning'],
   ['to', 'End'],
@@ -66,15 +77,18 @@ const STEPS = 200; // of the arrow keys over a side of the map
 const RIG_NOTE =
   'Summits at the pixels as they are; the table by sampling interval says how far they depend on it. ' +
   'One surface against a smooth one.';
+/** @type {Record<string, number[]>} */
 const KEYS = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
 
+/** @param {Own} own */
 const isCut = (own) => Boolean(own.short_cutoff || own.long_cutoff);
+/** @param {Own} own */
 const degreeOf = (own) => Number(own.degree ?? 1);
 
 /**
  * What measures a scan.
- * @param {import('./files.js').DataFile} file
- * @param {object} own
+ * @param {DataFile} file
+ * @param {Own} own
  * @returns {import('./files.js').Asked}
  */
 export function taskOf(file, own) {
@@ -84,12 +98,22 @@ export function taskOf(file, own) {
   return {task: `measure ${name}`, args: {files: file, ...stated({...more, ...Object.fromEntries(texts)})}};
 }
 
+/** @param {number} value @param {string} unit */
 const textIn = (value, unit) => `${Number(value.toPrecision(5))} ${unit}`;
 
-/** Field of a map: cells with their places. */
+/**
+ * Field of a map: cells with their places.
+ * @param {any} content
+ * @returns {import('../chart-field.js').FieldPart}
+ */
 const fieldOf = (content) => content.chart.panels[0].parts[0];
 
-/** Ends of the section, by default along x through the middle of the map. */
+/**
+ * Ends of the section, by default along x through the middle of the map.
+ * @param {any} content
+ * @param {Own} own
+ * @returns {Section}
+ */
 function sectionOf(content, own) {
   const {x, y} = fieldOf(content);
   const {unit} = content.chart.panels[0].x;
@@ -97,13 +121,18 @@ function sectionOf(content, own) {
   return {
     from_x: textIn(x[0], unit),
     from_y: middle,
-    to_x: textIn(x.at(-1), unit),
+    to_x: textIn(x[x.length - 1], unit),
     to_y: middle,
     ...stated(own.section ?? {}),
   };
 }
 
-/** Numbers of the ends of the section in the unit of the map; null where one is written in another. */
+/**
+ * Numbers of the ends of the section in the unit of the map; null where one is written in another.
+ * @param {Section} section
+ * @param {string} unit
+ * @returns {number[]|null}
+ */
 function placesOf(section, unit) {
   const numbers = SECTION.map(([name]) =>
     section[name].endsWith(unit) || section[name].endsWith(unit.replace('µ', 'u')) ? parseFloat(section[name]) : NaN,
@@ -111,23 +140,31 @@ function placesOf(section, unit) {
   return numbers.every(Number.isFinite) ? numbers : null;
 }
 
-/** End of a section on the map, moved by pointer and arrow keys. */
+/**
+ * End of a section on the map, moved by pointer and arrow keys.
+ * @param {{label: string, place: number[], panel: Panel, ranges: Ranges, onMove: (place: number[]) => void}} props
+ */
 function End({label, place, panel, ranges, onMove}) {
   const held = useRef(false);
-  const axes = ['x', 'y'].map((name) => along(panel[name], ranges[name]));
+  const axes = AXES.map((name) => along(panel[name], ranges[name]));
   const shares = axes.map((axis, at) => axis.to(place[at]));
+  /** @param {number[]} next */
   const to = (next) => onMove(axes.map((axis, at) => axis.back(Math.min(Math.max(next[at], 0), 1))));
+  /** @param {PointerEvent & {currentTarget: Element}} event */
   const move = (event) => {
     if (!held.current) return;
-    const {left, top, width, height} = event.currentTarget.parentElement.getBoundingClientRect();
+    const map = /** @type {Element} */ (event.currentTarget.parentElement);
+    const {left, top, width, height} = map.getBoundingClientRect();
     to([(event.clientX - left) / width, 1 - (event.clientY - top) / height]);
   };
+  /** @param {KeyboardEvent} event */
   const press = (event) => {
     const step = KEYS[event.key];
     if (!step) return;
     event.preventDefault();
     to(shares.map((share, at) => share + (step[at] * (event.shiftKey ? 10 : 1)) / STEPS));
   };
+  /** @param {PointerEvent & {currentTarget: Element}} event */
   const hold = (event) => {
     held.current = true;
     event.currentTarget.setPointerCapture(event.pointerId);
@@ -136,7 +173,7 @@ function End({label, place, panel, ranges, onMove}) {
     held.current = false;
     settle();
   };
-  const said = place.map((value, at) => `${'xy'[at]} ${textIn(value, panel.x.unit)}`).join(', ');
+  const said = place.map((value, at) => `${'xy'[at]} ${textIn(value, panel.x.unit ?? '')}`).join(', ');
   return html`<button
     type="button"
     class="scan-end"
@@ -152,7 +189,10 @@ function End({label, place, panel, ranges, onMove}) {
   ></button>`;
 }
 
-/** Map with the section on it. */
+/**
+ * Map with the section on it.
+ * @param {{content: any, section: Section, set: SetOwn}} props
+ */
 function HeightMap({content, section, set}) {
   const [panel] = content.chart.panels;
   const {x, y} = fieldOf(content);
@@ -169,8 +209,9 @@ function HeightMap({content, section, set}) {
     };
     return {...content.chart, legend: 'none', panels: [{...panel, parts: [fieldOf(content), ...(line ? [line] : [])]}]};
   }, [content, String(places)]);
+  /** @param {string} name @returns {(next: number[]) => void} */
   const move = (name) => (next) => {
-    const within = [x, y].map((axis, at) => Math.min(Math.max(next[at], axis[0]), axis.at(-1)));
+    const within = [x, y].map((axis, at) => Math.min(Math.max(next[at], axis[0]), axis[axis.length - 1]));
     set(
       {
         section: {
@@ -182,6 +223,7 @@ function HeightMap({content, section, set}) {
       {replace: true},
     );
   };
+  /** @param {Panel} shown @param {Ranges} ranges */
   const over = (shown, ranges) =>
     places &&
     ENDS.map(
@@ -202,13 +244,16 @@ function HeightMap({content, section, set}) {
   />`;
 }
 
-/** Section of a scan with its ends as numbers. */
+/**
+ * Section of a scan with its ends as numbers.
+ * @param {{file: DataFile, request: object, section: Section, set: SetOwn}} props
+ */
 function SectionCard({file, request, section, set}) {
   const {content, failure, isWaiting} = useReply(`section ${file.upload}`, 'api/section', {...request, section});
   const take = () => {
     const [panel] = content.chart.panels;
     const [{x, y}] = panel.parts;
-    const rows = x.map((value, at) => `${value},${y[at] ?? ''}`);
+    const rows = /** @type {number[]} */ (x).map((value, at) => `${value},${y[at] ?? ''}`);
     save({
       name: 'section.csv',
       kind: 'text/csv',
@@ -235,6 +280,7 @@ function SectionCard({file, request, section, set}) {
   <//>`;
 }
 
+/** @param {FileProps} props */
 export default function Scan({file, own, set}) {
   const {shown = 'levelled', robust = false, seen = 'map', measure = 'surface'} = own;
   const request = {
@@ -247,7 +293,10 @@ export default function Scan({file, own, set}) {
   const {content, failure, isWaiting} = useReply(`scan ${file.upload}`, 'api/scan', request);
   const lacking = LACKING.filter(([name]) => own[name] || failure?.faults.some(({key}) => key === name));
   const section = content && !content.is_profile && sectionOf(content, own);
+  /** @param {string} name @param {string} usual @returns {(value: string) => void} */
   const pick = (name, usual) => (value) => set({[name]: value === usual ? null : value});
+  /** @type {string[]} */
+  const caveats = content?.caveats ?? [];
   return html`
     <div class=${classes('scan-columns', {'is-alone': !section})}>
       <${Card} id="scan-title" title=${file.name}>
@@ -299,7 +348,7 @@ export default function Scan({file, own, set}) {
                   ? html`<${Relief} content=${content} own=${own} set=${set} label=${`${file.name} in 3D`} />`
                   : html`<${HeightMap} content=${content} section=${section} set=${set} />`
             }
-            ${content.caveats.map((line) => html`<p key=${line} class="notice">${line}</p>`)}
+            ${caveats.map((line) => html`<p key=${line} class="notice">${line}</p>`)}
             <details class="chart-numbers">
               <summary>About this scan</summary>
               <${TextTable} rows=${content.facts} label="About this scan" />

@@ -23,7 +23,7 @@ const RIG_NOTE =
 /**
  * What measures a spectrum.
  * @param {import('./files.js').DataFile} file
- * @param {object} own
+ * @param {import('./files.js').Own} own
  * @returns {import('./files.js').Asked}
  */
 export function taskOf(file, own) {
@@ -35,7 +35,10 @@ export function taskOf(file, own) {
   };
 }
 
-/** Whether a circuit is sought or the stack of the rig as it is now, which is given as a file. */
+/**
+ * Whether a circuit is sought or the stack of the rig as it is now, which is given as a file.
+ * @param {{own: import('./files.js').Own, set: import('./files.js').SetOwn}} props
+ */
 function Sought({own, set}) {
   const {
     state: {rig},
@@ -79,6 +82,7 @@ function Sought({own, set}) {
   </div>`;
 }
 
+/** @param {import('./files.js').FileProps} props */
 export default function Spectrum({file, own, set}) {
   return html`<${Card} id="spectrum-title" title=${file.name}>
     <${Measured}

@@ -8,7 +8,7 @@ import {addressOf, change, useApp} from '../state.js';
 import {save} from '../take-away.js';
 
 /**
- * @param {{source: Object|null}} props `source` is what a request of "measured-use" has beside the runs: results and
+ * @param {{source: object|null}} props `source` is what a request of "measured-use" has beside the runs: results and
  *   conditions, or a table; null for none
  */
 export function Use({source}) {
@@ -19,7 +19,9 @@ export function Use({source}) {
   const [note, setNote] = useState('');
   const {content, failure} = useReply('use', source && 'api/measured-use', source ?? NOTHING);
   const known = new Set(rigView?.fields.map(({key}) => key));
-  const entries = (content?.entries ?? []).filter(({key}) => known.has(key.replace('uncertainty.', '')));
+  /** @type {{key: string, text: string}[]} */
+  const measured = content?.entries ?? [];
+  const entries = measured.filter(({key}) => known.has(key.replace('uncertainty.', '')));
   const set = () => {
     change({
       rig: {...rig, changes: {...rig.changes, ...Object.fromEntries(entries.map(({key, text}) => [key, text]))}},

@@ -5,16 +5,34 @@ import {Labelled, refusedBy, split, TextField} from '../fields.js';
 import {capital, Refusal, Select, words} from '../parts.js';
 import {change, settle} from '../state.js';
 
-/** Arguments of a task with what is said of each; null until they are read. @param {string} task */
+/**
+ * @import {Failure} from '../api.js'
+ * @import {FieldEvent} from '../parts.js'
+ * @import {Texts} from '../state.js'
+ * @typedef {{type?: string|string[], enum?: (string|null)[], default?: any, description: string, 'x-unit'?: string}}
+ *   Schema of an argument
+ * @typedef {Record<string, Schema>} Schemas by the names of the arguments
+ */
+
+/**
+ * Arguments of a task with what is said of each; null until they are read.
+ * @param {string} task
+ * @returns {{schema: Schemas|null, failure: Failure|null}}
+ */
 export function useSchema(task) {
   const {content, failure} = useReply('description', 'api/description', undefined);
   const body = content?.paths[`/api/tasks/${task.replaceAll(' ', '/')}`].post.requestBody;
   return {schema: body?.content['application/json'].schema.properties ?? null, failure};
 }
 
+/** @param {Schema} schema */
 const kindsOf = (schema) => [schema.type].flat();
 
-/** Argument of a text of the view: a flag, a list or a number where the task takes nothing else. */
+/**
+ * Argument of a text of the view: a flag, a list or a number where the task takes nothing else.
+ * @param {Schema} schema
+ * @param {string} text
+ */
 function argument(schema, text) {
   const kinds = kindsOf(schema);
   if (kinds.includes('boolean')) return text === 'yes';
@@ -30,8 +48,9 @@ function argument(schema, text) {
  * Arguments that the view gives, each under its name after a prefix.
  * @param {string} prefix
  * @param {string[]} names
- * @param {object} schema
- * @param {object} view
+ * @param {Schemas} schema
+ * @param {Texts} view
+ * @returns {Record<string, any>}
  */
 export const given = (prefix, names, schema, view) =>
   Object.fromEntries(
@@ -43,11 +62,12 @@ export const given = (prefix, names, schema, view) =>
 
 /**
  * Failure whose faults have the argument of which each is, by its key or by the name with which its sentence begins.
- * @param {object|null} failure
+ * @param {Failure|null} failure
  * @param {string[]} names
  */
 export function withNames(failure, names) {
   const longest = [...names].sort((one, other) => other.length - one.length);
+  /** @param {import('../api.js').Fault} fault */
   const keyOf = ({key, text}) =>
     names.includes(key) ? key : (longest.find((name) => new RegExp(`^${name}\\b`).test(text)) ?? key);
   return failure && {...failure, faults: failure.faults.map((fault) => ({...fault, key: keyOf(fault)}))};
@@ -55,16 +75,18 @@ export function withNames(failure, names) {
 
 /**
  * Field of one argument, its entry of the view after a prefix.
- * @param {{prefix: string, name: string, schema: object, label?: string, view: object, fault?: string}} properties
+ * @param {{prefix: string, name: string, schema: Schema, label?: string, view: Texts, fault?: string}} properties
  */
 function Asked({prefix, name, schema, label = capital(words(name)), view, fault}) {
   const [entry, id] = [`${prefix}.${name}`, `${prefix}-${name}`];
   const text = view[entry] ?? '';
+  /** @param {string} next @param {boolean} isMoving */
   const give = (next, isMoving) => change({view: {[entry]: next.trim() || null}}, {replace: isMoving});
   const described = [fault && `${id}-refusal`, `${id}-help`].filter(Boolean).join(' ');
   const shared = {id, 'data-test': entry, ...refusedBy(id, fault), 'aria-describedby': described};
   const help = html`<p class="hint" id=${`${id}-help`}>${schema.description.split(/(?<=\.) A number/)[0]}</p>`;
   if (kindsOf(schema).includes('boolean')) {
+    /** @param {FieldEvent} event */
     const toggle = (event) =>
       change({view: {[entry]: event.target.checked === schema.default ? null : event.target.checked ? 'yes' : 'no'}});
     return html`<div class="field">
@@ -101,7 +123,7 @@ function Asked({prefix, name, schema, label = capital(words(name)), view, fault}
 
 /**
  * Fields of some arguments.
- * @param {{names: string[], prefix: string, schema: object, labels?: object, view: object, faultOf: (name: string) =>
+ * @param {{names: string[], prefix: string, schema: Schemas, labels?: Texts, view: Texts, faultOf: (name: string) =>
  *   string|undefined}} properties
  */
 export const Fields = ({names, schema, labels = {}, faultOf, ...rest}) =>
@@ -118,12 +140,14 @@ export const Fields = ({names, schema, labels = {}, faultOf, ...rest}) =>
     )}
   </div>`;
 
+/** @type {Texts} */
 const USUAL = {'drive.frequency': 'a fifth either way', 'drive.waveform': 'as in the rig; or sine, square'};
+/** @param {import('../fields.js').RigField} field */
 const isVaried = ({key, lowest}) => key in USUAL || (key.startsWith('structure.') && lowest != null);
 
 /**
  * What may vary: a range of the frequency and of each entry of the structure, and waveforms.
- * @param {{fields: object[], view: object, fault?: string}} properties
+ * @param {{fields: import('../fields.js').RigField[], view: Texts, fault?: string}} properties
  */
 export const Ranges = ({fields, view, fault = ''}) => html`<fieldset>
   <legend>What may vary, as a range</legend>

@@ -10,6 +10,7 @@ import {save} from '../take-away.js';
  */
 export function Saves({task, args, files, isOff}) {
   const [note, setNote] = useState('');
+  /** @param {string} label @param {string} which */
   const take = async (label, which) => {
     setNote(`${label}: being made…`);
     const more = which === 'report' ? {form: which} : which === 'all' ? {} : {ending: which};
@@ -17,7 +18,7 @@ export function Saves({task, args, files, isOff}) {
       body: {task, arguments: args, ...more},
     });
     if (content) save(content);
-    setNote(content ? `${content.name}: saved.` : failure.faults[0]?.text || failure.text);
+    setNote(failure ? failure.faults[0]?.text || failure.text : `${content.name}: saved.`);
   };
   return html`<${Card} id="saves" title="To take away">
     <div class="row">
@@ -36,7 +37,10 @@ export function Saves({task, args, files, isOff}) {
   <//>`;
 }
 
-/** Files of a job that is done, as links. */
+/**
+ * Files of a job that is done, as links.
+ * @param {{job: import('../job.js').Job|null, files: string[]}} props
+ */
 export const JobFiles = ({job, files}) =>
   job?.state === 'done'
     ? html`<${Card} id=${`files-${job.id}`} title="Files">

@@ -6,19 +6,31 @@ import {Chart} from '../chart.js';
 import {Button, Card, classes} from '../parts.js';
 import {addressOf, change, useApp} from '../state.js';
 
+/**
+ * @import {Texts} from '../state.js'
+ * @typedef {{objectives: Record<string, number>, frequency: {value: number}, changes: Texts}} DesignEntry
+ * @typedef {{minimise: string, pareto: string, front: DesignEntry[], designs: DesignEntry[]}} Optimum
+ */
+
 const SAME = 1e-5; // relative distance within which a point is that of a design
 
-/** Place of a design in the linked figure: both objectives of a front, else one over the frequency in kHz. */
+/**
+ * Place of a design in the linked figure: both objectives of a front, else one over the frequency in kHz.
+ * @param {DesignEntry} design
+ * @param {Optimum} answer
+ */
 const placeOf = ({objectives, frequency}, {minimise, pareto, front}) =>
   front.length
     ? {x: objectives[minimise], y: objectives[pareto]}
     : {x: 1e-3 * frequency.value, y: objectives[minimise]};
 
+/** @param {number} one @param {number} other */
 const isSame = (one, other) => Math.abs(one - other) <= SAME * Math.abs(other);
 
 /**
- * @param {{content: object, linked?: object, isDim: boolean, rig: object}} properties `linked` is the figure with a
- *   point a design
+ * @param {{content: Omit<import('../answer.js').Content, 'answer'> & {answer: Optimum}, linked?:
+ *   import('../answer.js').Drawing, isDim: boolean, rig: import('../state.js').RigState}} properties `linked` is the
+ *   figure with a point a design
  */
 export function Front({content, linked, isDim, rig}) {
   const {
@@ -28,10 +40,12 @@ export function Front({content, linked, isDim, rig}) {
   const [read, setRead] = useState(null); // number of the design under the pointer, or at the keys
   const [note, setNote] = useState('');
   const designs = answer.front.length ? answer.front : answer.designs;
-  const {heads, rows} = blocks.find(({kind}) => kind === 'table');
+  const {heads = [], rows = []} = blocks.find(({kind}) => kind === 'table') ?? {};
   const chosen = Math.min(Number(view.design) || 0, designs.length - 1);
   const places = designs.map((design) => placeOf(design, answer));
+  /** @param {number|null} number */
   const choose = (number) => number !== null && change({view: {design: number ? String(number) : null}});
+  /** @param {{x: number, y: number}|null} point */
   const onRead = (point) => {
     const number = point ? places.findIndex(({x, y}) => isSame(x, point.x) && isSame(y, point.y)) : -1;
     setRead(number < 0 ? null : number);

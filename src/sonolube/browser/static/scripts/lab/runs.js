@@ -3,7 +3,7 @@
  * the page Data.
  */
 import {html, useEffect, useState} from '../../vendor/htm-preact-3.1.1.js';
-import {Blocks, Caveats, Failure} from '../answer.js';
+import {Blocks, Caveats, drawings, Failure} from '../answer.js';
 import {ask, useConnection, useReply} from '../api.js';
 import {Chart} from '../chart.js';
 import {duration, isActive, JobState, useJob} from '../job.js';
@@ -11,16 +11,29 @@ import {Button, Card, Refusal} from '../parts.js';
 import {change, useApp} from '../state.js';
 import {offer} from '../take-away.js';
 
+/**
+ * @import {RigState} from '../state.js'
+ * @import {Content} from '../answer.js'
+ * @typedef {{id: string, title: string, created: number, state: string, device: string, seed: number|null,
+ *   duration: number, tags: string[]}} RunEntry
+ */
+/** @param {number} seconds @returns {string} */
 const when = (seconds) => new Date(seconds * 1000).toLocaleString(undefined, {dateStyle: 'medium', timeStyle: 'short'});
 
-/** Answer of a task: figures, text, caveats. */
+/**
+ * Answer of a task: figures, text, caveats.
+ * @param {{answer: Content, of: string}} props
+ */
 export const Shown = ({answer, of}) => html`
-  ${answer.charts.filter((one) => one.chart).map((one) => html`<${Chart} key=${one.name} ...${one} />`)}
+  ${drawings(answer).map((one) => html`<${Chart} key=${one.name} ...${one} />`)}
   <${Blocks} blocks=${answer.blocks} />
   <${Caveats} answer=${answer} isMoving=${false} of=${of} hasFields=${false} />
 `;
 
-/** Runs side by side, and models fitted to them. */
+/**
+ * Runs side by side, and models fitted to them.
+ * @param {{compared: Content & {name: string, upload: string}, rig: RigState}} props
+ */
 function Compared({compared, rig}) {
   const args = {runs: {name: compared.name, upload: compared.upload}, rig};
   const job = useJob('fit', args);
@@ -55,12 +68,13 @@ export function Runs({turn}) {
     state: {view, rig},
   } = useApp();
   const {generation} = useConnection();
-  const [{content, failure}, setFound] = useState({});
+  const [{content, failure}, setFound] = useState(/** @type {Partial<import('../api.js').Reply>} */ ({}));
   const [note, setNote] = useState('');
   useEffect(() => {
     ask('api/lab/runs').then(setFound);
   }, [turn, generation]);
   const ticked = (view.ticked ?? '').split(',').filter(Boolean);
+  /** @param {string} id */
   const tick = (id) =>
     change({
       view: {
@@ -70,12 +84,16 @@ export function Runs({turn}) {
     });
   const compared = useReply('lab-compare', view.compare ? 'api/lab/compare' : null, {runs: ticked});
   const opened = useReply('lab-run', view.open ? `api/lab/runs/${encodeURIComponent(view.open)}` : null, undefined);
+  /** @param {string} id */
   const toData = async (id) => {
     const {content: file, failure: refused} = await ask(`api/lab/runs/${encodeURIComponent(id)}/upload`, {body: {}});
     if (file) change({page: 'data', view: {files: `${file.upload} ${file.name}`, file: file.upload}});
-    setNote(refused?.text);
+    setNote(refused?.text ?? '');
   };
+  /** @type {RunEntry[]} */
   const runs = content?.runs ?? [];
+  /** @type {string[]} */
+  const caveats = content?.caveats ?? [];
   return html`<${Card} id="runs-title" title="Runs" data-test="runs">
     <${Failure} failure=${failure} />
     ${content && !runs.length && html`<p class="hint" data-test="no-runs">No runs yet in ${content.folder}.</p>`}
@@ -149,7 +167,7 @@ export function Runs({turn}) {
       `
     }
     <${Refusal} text=${note} role="alert" />
-    ${(content?.caveats ?? []).map((line) => html`<p key=${line} class="hint">${line}</p>`)}
+    ${caveats.map((line) => html`<p key=${line} class="hint">${line}</p>`)}
     ${
       view.open &&
       html`<div class="lab-opened" data-test="opened-run">

@@ -31,7 +31,7 @@ export default function Stop() {
     event.preventDefault();
     stop();
   });
-  if (!isAtWork(run)) return null;
+  if (!run || !isAtWork(run)) return null;
   return html`<aside
     class=${classes('stop-bar', {'is-gone': isGone})}
     aria-label="Stop of the run"

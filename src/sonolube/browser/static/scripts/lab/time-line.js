@@ -4,7 +4,15 @@ import {Labelled, refusedBy, TextField} from '../fields.js';
 import {duration} from '../job.js';
 import {Button, capital, classes, Refusal, Select, words} from '../parts.js';
 
+/**
+ * @typedef {{key: string, label: string, kind: string, text: string, unit?: string, choices?: string[]}} ProtocolField
+ * @typedef {{number: string, kind: string, label: string, start: number, duration: number, depth: number,
+ *   fields: ProtocolField[]}} Step
+ * @typedef {{key: string, typed: string, text: string}} Wrong entry that was refused: what was typed, and the reason
+ */
+/** @type {Record<string, string>} */
 const LANES = {repeat: 'Repeat', steps: 'Steps', motor: 'Motor', drive: 'Drive', record: 'Record'};
+/** @type {Record<string, string>} */
 const LANE_OF = {
   repeat: 'repeat',
   motor_speed: 'motor',
@@ -13,19 +21,26 @@ const LANE_OF = {
   sweep: 'drive',
   acquire: 'record',
 };
+/** @param {{kind: string}} step @returns {string} */
 const laneOf = ({kind}) => LANE_OF[kind] ?? 'steps';
 const [NARROW, WIDE] = [64, 720]; // px of a step without a duration, and of all that have one
 
-/** Duration that a step adds to the test; recordings go on beside the steps that follow. */
+/**
+ * Duration that a step adds to the test; recordings go on beside the steps that follow.
+ * @param {Step} step
+ */
 const lasting = (step) => (['repeat', 'record'].includes(laneOf(step)) ? 0 : step.duration);
 
 /**
  * Place after the last column of a block: set points last until the next ones, recordings their time, repeats as their
  * steps.
+ * @param {Step[]} steps
+ * @param {number} at
  */
 function endOf(steps, at) {
   const [step, lane] = [steps[at], laneOf(steps[at])];
   if (lane === 'steps') return at + 1;
+  /** @param {Step} other */
   const ends = (other) =>
     lane === 'repeat'
       ? other.depth <= step.depth
@@ -35,24 +50,33 @@ function endOf(steps, at) {
   return next < 0 ? steps.length : next;
 }
 
-/** What stands on a block: its entries, or its kind. */
+/**
+ * What stands on a block: its entries, or its kind.
+ * @param {Step} step
+ */
 const textOf = ({label, fields}) =>
   fields
     .filter(({kind, text}) => text && kind !== 'flag')
     .map(({text}) => text)
     .join(', ') || label;
 
-/** Number of the step so many further in its list of steps. */
+/**
+ * Number of the step so many further in its list of steps.
+ * @param {string} number
+ * @param {number} by
+ */
 const beside = (number, by) => [...number.split('.').slice(0, -1), Number(number.split('.').at(-1)) + by].join('.');
 
-/** Entry of a protocol; what was refused of it stays as it was typed, with the reason below. */
+/**
+ * Entry of a protocol; what was refused of it stays as it was typed, with the reason below.
+ * @param {{field: ProtocolField, wrong: Wrong|null, set: (key: string, typed: string) => void}} props
+ */
 function Entry({field, wrong, set}) {
   const id = `entry-${field.key.replaceAll('.', '-')}`;
-  const refusal = wrong?.key === field.key ? wrong.text : '';
-  const [text, shared] = [
-    refusal ? wrong.typed : field.text,
-    {id, 'data-test': `entry:${field.key}`, ...refusedBy(id, refusal)},
-  ];
+  const own = wrong?.key === field.key ? wrong : null;
+  const refusal = own?.text ?? '';
+  const text = refusal ? own?.typed : field.text;
+  const shared = {id, 'data-test': `entry:${field.key}`, ...refusedBy(id, refusal)};
   const choices = field.kind === 'flag' ? ['true', 'false'] : field.choices;
   return html`<${Labelled} id=${id} label=${capital(field.label)} refusal=${refusal}>
     ${
@@ -76,8 +100,8 @@ function Entry({field, wrong, set}) {
 
 /**
  * The time line above what stands in two columns: entries of the chosen step with `start` below them, and `children`.
- * @param {{protocol: Object, edit: (changes: Object) => Promise<boolean>, wrong: {key: string, typed: string, text:
- *   string}|null, start: any, children: any}} properties
+ * @param {{protocol: {steps: Step[], kinds: string[], limits: ProtocolField[], metadata: ProtocolField[]},
+ *   edit: (changes: object) => Promise<boolean>, wrong: Wrong|null, start: any, children: any}} properties
  */
 export function TimeLine({protocol: {steps, kinds, limits, metadata}, edit, wrong, start, children}) {
   const [chosen, choose] = useState('1');
@@ -88,18 +112,25 @@ export function TimeLine({protocol: {steps, kinds, limits, metadata}, edit, wron
     steps.findIndex(({number}) => number === chosen),
   );
   const step = steps[at];
+  /** @param {string} number */
   const has = (number) => steps.some((other) => other.number === number);
   const whole = steps.reduce((sum, each) => sum + lasting(each), 0) || 1;
   const widths = steps.map((each) => Math.round(Math.max(NARROW, (WIDE * lasting(each)) / whole)));
   const lanes = Object.keys(LANES).filter((lane) => lane !== 'repeat' || steps.some((each) => laneOf(each) === lane));
 
+  /** @param {object} changes @param {string} [next] */
   const change = async (changes, next = step.number) => (await edit(changes)) && choose(next);
+  /** @param {string} key @param {string} typed */
   const set = (key, typed) => change({[key]: typed});
+  /** @param {number} by */
   const move = (by) =>
     has(beside(step.number, by)) &&
     change({move: {step: step.number, before: beside(step.number, by > 0 ? 2 : -1)}}, beside(step.number, by));
+  /** @param {KeyboardEvent} event */
   const press = (event) => {
-    const to = {ArrowLeft: at - 1, ArrowRight: at + 1, Home: 0, End: steps.length - 1}[event.key];
+    /** @type {Record<string, number>} */
+    const moves = {ArrowLeft: at - 1, ArrowRight: at + 1, Home: 0, End: steps.length - 1};
+    const to = moves[event.key];
     if (to === undefined) return;
     event.preventDefault();
     if (event.altKey) move(to - at);
@@ -108,6 +139,7 @@ export function TimeLine({protocol: {steps, kinds, limits, metadata}, edit, wron
       line.current.querySelectorAll('button')[to].focus();
     }
   };
+  /** @param {ProtocolField[]} fields */
   const entries = (fields) =>
     fields.map((field) => html`<${Entry} key=${field.key} field=${field} wrong=${wrong} set=${set} />`);
   return html`<div data-test="time-line">
@@ -193,7 +225,7 @@ export function TimeLine({protocol: {steps, kinds, limits, metadata}, edit, wron
       <//>
     </div>
     <${Refusal}
-      text=${['insert', 'remove', 'move'].includes(wrong?.key) && wrong.text}
+      text=${wrong && ['insert', 'remove', 'move'].includes(wrong.key) && wrong.text}
       role="alert"
       data-test="edit-refusal"
     />

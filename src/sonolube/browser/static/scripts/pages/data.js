@@ -14,6 +14,7 @@ import {save} from '../take-away.js';
  * and as default a component of {file, own, set, info, asked, view}: what was set for the file, what sets more, what it
  * is, and what measures it at rest.
  */
+/** @type {Record<string, [string, () => Promise<any>]>} */
 const KINDS = {
   recording: ['Recording', () => import('../data/recording.js')],
   scan: ['Scan of a surface', () => import('../data/scan.js')],
@@ -21,10 +22,16 @@ const KINDS = {
   runs: ['Table of runs', () => import('../data/runs.js')],
 };
 
+/**
+ * @import {Asked, DataFile, Own} from '../data/files.js'
+ * @import {ChangeOptions, Texts} from '../state.js'
+ * @typedef {{asked: Asked, content: import('../answer.js').Content}} Result what was measured of a file
+ */
+
 /** Modules of kinds that were read; null for one that could not be read. */
 const modules = new Map();
 
-/** Module of a kind; undefined while it is read. */
+/** Module of a kind; undefined while it is read. @param {string|undefined} kind */
 function useModule(kind) {
   const [, draw] = useState({});
   useEffect(() => {
@@ -39,7 +46,11 @@ function useModule(kind) {
   return modules.get(kind);
 }
 
-/** Line of a file in the list: its name, what it is, and what leaves it out; measures it and tells its result. */
+/**
+ * Line of a file in the list: its name, what it is, and what leaves it out; measures it and tells its result.
+ * @param {{file: DataFile, own: Own, view: Texts, isShown: boolean,
+ *   onResult: (upload: string, result: Result|null) => void}} props
+ */
 function FileLine({file, own, view, isShown, onResult}) {
   const {content: info, failure, isWaiting} = useInfo(file, own);
   const module = useModule(info?.kind);
@@ -77,7 +88,10 @@ function FileLine({file, own, view, isShown, onResult}) {
   </li>`;
 }
 
-/** The file that is shown, by its kind. */
+/**
+ * The file that is shown, by its kind.
+ * @param {{file: DataFile, own: Own, settled: Own, view: Texts}} props
+ */
 function Shown({file, own, settled, view}) {
   const {content: info, failure} = useInfo(file, own);
   const module = useModule(info?.kind);
@@ -87,6 +101,7 @@ function Shown({file, own, settled, view}) {
       : html`<${Loading}>Reading ${file.name}…<//><p class="row"><${Waiting} isWaiting=${true} /></p>`;
   if (module === null) return html`<p class="notice">${KINDS[info.kind][0]}: this workbench has no view of it yet.</p>`;
   if (!module) return html`<${Loading}>Reading the view…<//>`;
+  /** @param {Own} partial @param {ChangeOptions} [options] */
   const set = (partial, options) => setOwn(view, file, partial, options);
   const asked = module.taskOf && !info.reason ? module.taskOf(file, settled, info) : null;
   return html`<${module.default}
@@ -100,25 +115,29 @@ function Shown({file, own, settled, view}) {
   />`;
 }
 
-/** Results of all files: their quantities in one table, and tables of the same columns one below the other. */
+/**
+ * Results of all files: their quantities in one table, and tables of the same columns one below the other.
+ * @param {{files: DataFile[], results: Record<string, Result|null>}} props
+ */
 function Results({files, results}) {
-  const known = files.filter(({upload}) => results[upload]);
+  const known = files.flatMap(({name, upload}) => {
+    const result = results[upload];
+    return result ? [{...result.content, name, task: result.asked.task}] : [];
+  });
   if (!known.length) return null;
+  /** @type {Map<string, {heads: string[], rows: string[][]}>} */
   const groups = new Map();
-  for (const {name, upload} of known) {
-    for (const block of results[upload].content.blocks) {
+  for (const {name, blocks} of known) {
+    for (const block of blocks) {
       const heads = block.kind === 'rows' ? ['Quantity', 'Value'] : block.heads;
       if (!heads) continue;
       const key = heads.join('\n');
-      groups.set(key, {heads, rows: [...(groups.get(key)?.rows ?? []), ...block.rows.map((row) => [name, ...row])]});
+      const rows = (block.rows ?? []).map((row) => [name, ...row]);
+      groups.set(key, {heads, rows: [...(groups.get(key)?.rows ?? []), ...rows]});
     }
   }
   const take = async () => {
-    const answers = known.map(({name, upload}) => ({
-      name,
-      task: results[upload].asked.task,
-      answer: results[upload].content.answer,
-    }));
+    const answers = known.map(({name, task, answer}) => ({name, task, answer}));
     const {content} = await ask('api/measured-table', {body: {answers}});
     if (content) save({name: 'results.csv', kind: 'text/csv', text: content.csv});
   };
@@ -139,15 +158,17 @@ export default function Data() {
   if (!isMoving) rest.current = view;
   const settled = settingsOf(rest.current ?? view); // what is measured waits until a handle rests
   const [note, setNote] = useState('');
-  const [results, setResults] = useState({});
+  const [results, setResults] = useState(/** @type {Record<string, Result|null>} */ ({}));
   const files = filesOf(view);
   const own = settingsOf(view);
   const shown = files.find(({upload}) => upload === view.file) ?? files[0];
+  /** @param {File[]} given */
   const add = async (given) => {
     setNote(`Reading ${given.length === 1 ? given[0].name : `${given.length} files`}…`);
     setNote(await addFiles(view, given));
   };
   const isDropping = useDrop(add);
+  /** @param {string} upload @param {Result|null} result */
   const onResult = (upload, result) => setResults((old) => (old[upload] === result ? old : {...old, [upload]: result}));
   const choose = html`<${FileButton}
     label="Files of measurements"

@@ -2,7 +2,7 @@
  * Page Design: designs for a target friction, a plan of the next tests, and a friction controller, each to take away.
  */
 import {html, useEffect} from '../../vendor/htm-preact-3.1.1.js';
-import {Blocks, Caveats, Failure, RefusedNote, TextTable} from '../answer.js';
+import {Blocks, Caveats, drawings, Failure, RefusedNote, TextTable} from '../answer.js';
 import {taskPath, useLate, useReply} from '../api.js';
 import {Chart} from '../chart.js';
 import {Fields, given, Ranges, useSchema, withNames} from '../design/asked.js';
@@ -15,6 +15,16 @@ import {useRig, Workspace} from '../rig-panel.js';
 import {change, present, useApp} from '../state.js';
 import {offer} from '../take-away.js';
 import {Choices} from './explore.js';
+
+/**
+ * @import {Content} from '../answer.js'
+ * @import {Answer} from '../api.js'
+ * @import {Schemas} from '../design/asked.js'
+ * @import {RigView} from '../rig-panel.js'
+ * @import {RigState, State, Texts} from '../state.js'
+ * @typedef {{state: State, rigView: RigView, schema: Schemas, note: string, takeRuns: (file: File) => void}} PartProps
+ * @typedef {Answer & {isWaiting: boolean, isDim: boolean, faultOf: (name: string) => string|undefined}} AtOnce
+ */
 
 const TARGET = ['target_friction', 'target_reduction', 'minimise', 'pareto', 'actuator'];
 const LIMITS = [
@@ -83,18 +93,29 @@ const LABELS = {
   block: 'Blocks',
 };
 
-/** Text of a row of the facts of an answer. */
+/**
+ * Text of a row of the facts of an answer.
+ * @param {Content} content
+ * @param {string} name
+ */
 const factOf = ({blocks}, name) =>
   blocks
     .find(({kind}) => kind === 'rows')
-    .rows.find(([label]) => label === name)?.[1]
+    ?.rows?.find(([label]) => label === name)?.[1]
     .replace(/ \(D .*\)/, '');
 
-/** What an answer says, above its numbers. */
+/**
+ * What an answer says, above its numbers.
+ * @param {{text: string, isDim: boolean}} props
+ */
 const Statement = ({text, isDim}) =>
   html`<p class=${classes('statement', {'is-dim': isDim})} aria-live="polite" data-test="statement">${text}</p>`;
 
-/** Form of a part: first fields, and further ones folded, opened where one of them is refused. */
+/**
+ * Form of a part: first fields, and further ones folded, opened where one of them is refused.
+ * @param {{label: string, first: string[], more: string[], moreTitle: string, children?: any, [name: string]: any}}
+ *   props further ones are of its fields
+ */
 const Form = ({
   label,
   first,
@@ -111,10 +132,13 @@ const Form = ({
   </details>
 </form>`;
 
-/** Charts of an answer but one that stands elsewhere, its facts and caveats. */
+/**
+ * Charts of an answer but one that stands elsewhere, its facts and caveats.
+ * @param {{content: Content, isDim: boolean, of: string, without?: string}} props
+ */
 const Results = ({content, isDim, of, without}) => html`
-  ${content.charts
-    .filter(({name, chart}) => chart && name !== without)
+  ${drawings(content)
+    .filter(({name}) => name !== without)
     .map(
       (one) => html`<section class="card" key=${one.name} aria-label=${one.caption}>
         <${Chart} ...${one} dimmed=${isDim} />
@@ -134,12 +158,16 @@ const Results = ({content, isDim, of, without}) => html`
   </div>
 `;
 
-/** Designs for a target friction or reduction: a job, its front linked with its table. */
+/**
+ * Designs for a target friction or reduction: a job, its front linked with its table.
+ * @param {PartProps} props
+ */
 function Designs({state: {view, rig}, rigView, schema}) {
   const names = [...TARGET, ...LIMITS, 'over'];
   const over = Object.fromEntries(rigView.fields.map(({key}) => [key, view[`over.${key}`]]).filter(([, text]) => text));
   // what varies has no value of its own
   const changes = Object.fromEntries(Object.entries(rig.changes).filter(([key]) => !(key in over)));
+  /** @type {Record<string, any>} */
   const args = {
     rig: {...rig, changes},
     ...given('optimise', [...TARGET, ...LIMITS], schema, view),
@@ -153,9 +181,11 @@ function Designs({state: {view, rig}, rigView, schema}) {
     reason ? {kind: 'refused', text: reason, faults: [{key: '', text: reason}]} : found.failure,
     names,
   );
+  /** @param {string} name */
   const faultOf = (name) => failure?.faults.find(({key}) => key === name)?.text;
   useEffect(() => (isAsked ? offer('optimise', args) : undefined), [JSON.stringify(args)]);
-  const linked = content?.charts.find(({name}) => name.endsWith(content.answer.front.length ? '-front' : '-frequency'));
+  const ending = content?.answer.front.length ? '-front' : '-frequency';
+  const linked = content && drawings(content).find(({name}) => name.endsWith(ending));
   const hint = !isAsked
     ? 'Give a target friction or a reduction.'
     : content
@@ -212,16 +242,27 @@ function Designs({state: {view, rig}, rigView, schema}) {
   `;
 }
 
-/** Answer of a task to the fields of a part, at once; refusals by their field. */
+/**
+ * Answer of a task to the fields of a part, at once; refusals by their field.
+ * @param {string} task
+ * @param {object} args
+ * @param {string[]} names
+ * @returns {AtOnce}
+ */
 function useAnswer(task, args, names) {
   const reply = useReply('design', taskPath(task), args);
   const failure = withNames(reply.failure, names);
   useEffect(() => offer(task, args), [JSON.stringify(args)]);
   const isDim = useLate(reply.isWaiting || Boolean(failure));
-  return {...reply, failure, isDim, faultOf: (name) => failure?.faults.find(({key}) => key === name)?.text};
+  /** @param {string} name */
+  const faultOf = (name) => failure?.faults.find(({key}) => key === name)?.text;
+  return {...reply, failure, isDim, faultOf};
 }
 
-/** What stands above the numbers of an answer: waiting, refused, left out. */
+/**
+ * What stands above the numbers of an answer: waiting, refused, left out.
+ * @param {{reply: AtOnce, names: string[], rig: RigState}} props
+ */
 const Status = ({reply, names, rig}) => html`
   <div class="row study-status"><${Waiting} isWaiting=${reply.isWaiting} /></div>
   <${Failure} failure=${reply.failure} shown=${[...names, ...Object.keys(rig.changes)]} />
@@ -229,9 +270,13 @@ const Status = ({reply, names, rig}) => html`
   ${!reply.content && !reply.failure && html`<div class="skeleton" aria-hidden="true"></div>`}
 `;
 
+/** @param {boolean[]} states */
 const statesText = (states) => states.map((is) => (is ? 'on' : 'off')).join(', ');
 
-/** Plan of the next tests, its sheet, its table to fill and the protocols of its runs. */
+/**
+ * Plan of the next tests, its sheet, its table to fill and the protocols of its runs.
+ * @param {PartProps} props
+ */
 function Plan({state: {view, rig}, schema, note, takeRuns}) {
   const names = [...PLANNED, ...QUESTION, ...BESIDE];
   const args = present({
@@ -243,6 +288,11 @@ function Plan({state: {view, rig}, schema, note, takeRuns}) {
   });
   const reply = useAnswer('plan', args, names);
   const {content, isDim, faultOf} = reply;
+  /** @type {import('../answer.js').Block[]} */
+  const blocks = content?.blocks ?? [];
+  const points = blocks.find(({kind}) => kind === 'table');
+  /** @type {{run: number, block: number, point: number, specimens: string[], vibrated: boolean[][]}[]} */
+  const runs = content?.answer.runs ?? [];
   return html`
     <${Form}
       label="What to test"
@@ -274,14 +324,14 @@ function Plan({state: {view, rig}, schema, note, takeRuns}) {
           ]}
         />
         <${Card} id="plan-points" title="Points" isDim=${isDim}>
-          <${TextTable} ...${content.blocks.find(({kind}) => kind === 'table')} kind="table-frame" test="plan-points" />
+          <${TextTable} ...${points} kind="table-frame" test="plan-points" />
         <//>
         <${Results} content=${content} isDim=${isDim} of=${JSON.stringify(args)} />
         <${Card} id="plan-runs" title="Runs in their order" isDim=${isDim}>
           <${TextTable}
             heads=${['run', 'block', 'point', 'specimens', 'vibration']}
             test="plan-runs"
-            rows=${content.answer.runs.map((run) => [
+            rows=${runs.map((run) => [
               run.run,
               run.block,
               run.point,
@@ -295,7 +345,10 @@ function Plan({state: {view, rig}, schema, note, takeRuns}) {
   `;
 }
 
-/** Units of the Functional Mock-up Interface, as a job with its files. */
+/**
+ * Units of the Functional Mock-up Interface, as a job with its files.
+ * @param {{args: Record<string, any>, view: Texts, title: string}} props
+ */
 function Units({args, view, title}) {
   const {schema} = useSchema('export fmu');
   const shared = Object.fromEntries(OF_UNITS.map((name) => [name, args[name]]));
@@ -345,13 +398,17 @@ function Units({args, view, title}) {
   );
 }
 
-/** A friction controller: its margins and responses, its C source, table and units. */
+/**
+ * A friction controller: its margins and responses, its C source, table and units.
+ * @param {PartProps} props
+ */
 function Control({state: {view, rig}, schema, rigView}) {
   const names = [...LOOP, ...DEVICE];
   const args = {rig, ...given('control', names, schema, view)};
   const reply = useAnswer('control', args, names);
   const {content, isDim, faultOf} = reply;
-  const {summary = []} = content?.answer ?? {};
+  /** @type {{label: string, text: string}[]} */
+  const summary = content?.answer.summary ?? [];
   return html`
     <${Form}
       label="Loop"
@@ -392,7 +449,10 @@ function Control({state: {view, rig}, schema, rigView}) {
   `;
 }
 
-/** Parts of the page: name of the choice, title, task, component. */
+/**
+ * Parts of the page: name of the choice, title, task, component.
+ * @type {Record<string, [string, string, string, any]>}
+ */
 const PARTS = {
   designs: ['Designs for a target', 'Which design reaches a friction', 'optimise', Designs],
   plan: ['Test plan', 'Which tests tell the models apart', 'plan', Plan],

@@ -8,6 +8,18 @@ import {isActive, JobState, useJob} from '../job.js';
 import {Button, fileOf, Loading, Refusal, Section, Select, Sheet, words} from '../parts.js';
 import {addressOf, change, settle, useApp} from '../state.js';
 
+/**
+ * @import {FieldEvent} from '../parts.js'
+ * @import {Texts} from '../state.js'
+ * @typedef {{id: string, statement: string, verdict: string, claimed: string, found: string, source: string, judged:
+ *   string, decisive_rows: string[], supporting_rows: string[]}} Claim
+ * @typedef {{id: string, source: string, quantity: string, printed: string, unit: string, computed: number|null,
+ *   relative_error: number|null, verdict: string, kind: string, note: string, [name: string]: any, alternatives:
+ *   Record<string, {computed: number, reproduced: boolean, note: string}>}} ResultRow
+ * @typedef {Record<'table'|'erratum'|'column'|'printed'|'corrected'|'evidence', string> & {row: number|null}}
+ *   Correction
+ */
+
 const LABEL = 'Reproduction of the dissertation';
 const MOST = 60; // rows shown before all are asked for
 const HEADS = ['Row', 'Source', 'Quantity', 'Published', 'Computed', 'Difference', 'Verdict', 'Note'];
@@ -17,9 +29,13 @@ const FILTERS = [
   ['kind', 'Class'],
 ];
 
+/** @param {{of: string}} props */
 const Verdict = ({of}) => html`<span class=${`verdict is-${of.replaceAll(' ', '_')}`}>${words(of)}</span>`;
 
-/** Links to rows by their ids. */
+/**
+ * Links to rows by their ids.
+ * @param {{ids: string[], title: string}} props
+ */
 const RowLinks = ({ids, title}) =>
   ids.length
     ? html`<p class="hint">
@@ -34,7 +50,10 @@ const RowLinks = ({ids, title}) =>
     </p>`
     : null;
 
-/** Scorecard: each claim with its verdict, and what it rests on. */
+/**
+ * Scorecard: each claim with its verdict, and what it rests on.
+ * @param {{claims: Claim[]}} props
+ */
 const Claims = ({claims}) => html`<${Section} id="claims-title" title="Claims">
   <ul class="claims" data-test="claims">
     ${claims.map(
@@ -52,7 +71,11 @@ const Claims = ({claims}) => html`<${Section} id="claims-title" title="Claims">
   </ul>
 <//>`;
 
-/** Rows that the view asks for. */
+/**
+ * Rows that the view asks for.
+ * @param {ResultRow[]} rows
+ * @param {Texts} view
+ */
 function filtered(rows, view) {
   const search = (view.search ?? '').toLowerCase().split(/\s+/).filter(Boolean);
   return rows.filter(
@@ -66,12 +89,16 @@ function filtered(rows, view) {
   );
 }
 
+/** @param {{rows: ResultRow[], view: Texts, count: number}} props */
 function Filters({rows, view, count}) {
+  /** @param {string} name */
   const choices = (name) => [
     ['', 'all'],
     ...[...new Set(rows.map((row) => String(row[name])))].sort().map((each) => [each, words(each)]),
   ];
+  /** @param {string} name @returns {(event: FieldEvent) => void} */
   const set = (name) => (event) => change({view: {[name]: event.target.value || null, row: null}});
+  /** @param {FieldEvent} event */
   const search = (event) => change({view: {search: event.target.value || null, row: null}}, {replace: true});
   return html`<div class="filters" role="search" aria-label="Rows">
     <div>
@@ -104,7 +131,10 @@ function Filters({rows, view, count}) {
   </div>`;
 }
 
-/** What other models give for the number of a row. */
+/**
+ * What other models give for the number of a row.
+ * @param {{of: ResultRow}} props
+ */
 function Alternatives({of}) {
   const found = Object.entries(of.alternatives);
   if (!found.length) return null;
@@ -121,8 +151,10 @@ function Alternatives({of}) {
   </details>`;
 }
 
+/** @param {string} id */
 const rowId = (id) => `row-${id.replaceAll(/[^\w]/g, '-')}`;
 
+/** @param {{rows: ResultRow[], view: Texts}} props */
 function Rows({rows, view}) {
   const [isAll, setAll] = useState(false);
   const found = filtered(rows, view);
@@ -176,16 +208,18 @@ function Rows({rows, view}) {
 
 /** Corrections of single cells of the published tables, read when they are opened. */
 function Errata() {
-  const [found, setFound] = useState(null);
+  const [found, setFound] = useState(/** @type {Correction[]|null} */ (null));
   const isAsked = useRef(false);
+  /** @param {{target: HTMLDetailsElement}} event */
   const read = async (event) => {
     if (!event.target.open || isAsked.current) return;
     isAsked.current = true;
     const {content} = await callTask('published', {});
+    /** @type {({id: string, corrections: Omit<Correction, 'table'>[]}|undefined)[]} */
     const tables = [];
     for (const table of Object.keys(content?.answer ?? {}))
       tables.push((await callTask('published', {table})).content?.answer);
-    setFound(tables.filter(Boolean).flatMap((table) => table.corrections.map((each) => ({...each, table: table.id}))));
+    setFound(tables.flatMap((table) => table?.corrections.map((each) => ({...each, table: table.id})) ?? []));
   };
   return html`<${Section} id="errata-title" title="Errata">
     <details onToggle=${read} data-test="errata">
@@ -211,16 +245,11 @@ function Errata() {
   <//>`;
 }
 
+/** @param {{job: import('../job.js').Job, files: string[]}} props */
 function Figures({job, files}) {
   const names = files.filter((name) => name.endsWith('.svg'));
-  const title = (name) =>
-    words(
-      name
-        .split('/')
-        .at(-1)
-        .replace(/\.svg$/, '')
-        .replaceAll('-', ' '),
-    );
+  /** @param {string} name */
+  const title = (name) => words(name.replace(/^.*\/|\.svg$/g, '').replaceAll('-', ' '));
   if (!names.length) return null;
   return html`<${Section} id="figures-title" title="Figures">
     <div class="figures" data-test="figures">
@@ -250,6 +279,8 @@ export default function Dissertation() {
   const job = useJob('reproduce', NOTHING);
   const {content} = job;
   const isReady = job.job?.state === 'done' && content;
+  /** @type {{caveats: string[], verdicts: Record<string, number>}} */
+  const {caveats, verdicts} = isReady ? content.answer : {caveats: [], verdicts: {}};
   return html`<${Sheet} title="Dissertation">
     <p>Every published number of the dissertation beside the computed one, its claims judged by them.</p>
     ${
@@ -269,12 +300,12 @@ export default function Dissertation() {
       isReady &&
       html`
         <p class="hint" data-test="verdicts">
-          ${content.answer.count} numbers: ${Object.entries(content.answer.verdicts)
+          ${content.answer.count} numbers: ${Object.entries(verdicts)
             .filter(([, count]) => count)
             .map(([name, count]) => `${count} ${words(name)}`)
             .join(', ')}. sonolube ${content.answer.version}.
         </p>
-        ${content.answer.caveats.map((line) => html`<p key=${line} class="notice is-warning">${line}</p>`)}
+        ${caveats.map((line) => html`<p key=${line} class="notice is-warning">${line}</p>`)}
         <${Claims} claims=${content.answer.claims} />
         <${Rows} rows=${content.answer.rows} view=${state.view} />
       `

@@ -1,6 +1,6 @@
 /** Page Explore: a study of the rig over one or two quantities; a click in its figure sets the rig. */
 import {html, useEffect, useMemo, useRef, useState} from '../../vendor/htm-preact-3.1.1.js';
-import {Blocks, Caveats, Failure, RefusedNote} from '../answer.js';
+import {Blocks, Caveats, drawings, Failure, RefusedNote} from '../answer.js';
 import {taskPath, useReply} from '../api.js';
 import {Chart} from '../chart.js';
 import {fieldOf as drawnField} from '../chart-scale.js';
@@ -11,6 +11,16 @@ import {useRig, Workspace} from '../rig-panel.js';
 import {change, present, settle, useApp} from '../state.js';
 import {offer} from '../take-away.js';
 
+/**
+ * @import {Fault} from '../api.js'
+ * @import {Axis, ChartData, Name, Panel, Part} from '../chart-scale.js'
+ * @import {RigField} from '../fields.js'
+ * @import {RigView} from '../rig-panel.js'
+ * @import {Edits, State, Texts} from '../state.js'
+ * @typedef {{title: string, task: string, args?: object, texts?: string[][], isOver?: boolean, isLong?: boolean,
+ *   needsStructure?: boolean, kinds?: boolean, runs?: boolean, hasBodies?: boolean}} StudyKind
+ */
+
 const ENDS = [
   ['from', 'lowest', 'From'],
   ['to', 'highest', 'To'],
@@ -18,6 +28,7 @@ const ENDS = [
 /**
  * Studies beside those over one quantity, which the server names: task, entries of the view it takes, what it needs,
  * whether it is a job.
+ * @type {Record<string, StudyKind>}
  */
 const STUDIES = {
   any: {title: 'Any entry', task: 'sweep', isOver: true, texts: ENDS},
@@ -52,22 +63,32 @@ const STUDIES = {
 };
 const OVER_POINTS = 41;
 
-/** Names of the studies that a rig has. */
+/**
+ * Names of the studies that a rig has.
+ * @param {RigView} rigView
+ */
 const offeredOf = ({studies, drawing}) => [
   ...studies,
   ...Object.keys(STUDIES).filter((name) => drawing.has_structure || !STUDIES[name].needsStructure),
 ];
 
-/** Field that the study of any entry runs over, and its values. */
+/**
+ * Field that the study of any entry runs over, and its values.
+ * @param {Texts} view
+ * @param {RigField[]} fields
+ */
 function overOf(view, fields) {
   const numbers = fields.filter((field) => field.lowest != null);
   const field = numbers.find(({key}) => key === view.key) ?? numbers[0];
+  /** @param {string|undefined} text @param {number|undefined} number */
   const end = (text, number) => text ?? `${number} ${field.unit}`.trim();
   return field && {numbers, field, from: end(view.from, field.lowest), to: end(view.to, field.highest)};
 }
 
 /**
  * Entries set by a click in a map, each as it was set and as the map was drawn with, so that the map stays as it is.
+ * @param {State} state
+ * @returns {Record<string, [string, string|null]>}
  */
 function fixedOf({view, rig}) {
   try {
@@ -78,16 +99,24 @@ function fixedOf({view, rig}) {
   }
 }
 
-/** Rig that a study is of: that of the state, or the one before the clicks in its map. */
+/**
+ * Rig that a study is of: that of the state, or the one before the clicks in its map.
+ * @param {State} state
+ */
 function rigOf(state) {
   const before = Object.entries(fixedOf(state)).map(([key, [, text]]) => [key, text]);
   return {...state.rig, changes: present({...state.rig.changes, ...Object.fromEntries(before)})};
 }
 
-/** One of some names, or else the first of them. */
+/** One of some names, or else the first of them. @param {string[]} names @param {string} name */
 const among = (names, name) => (names.includes(name) ? name : names[0]);
 
-/** Study that the view names, and its arguments. */
+/**
+ * Study that the view names, and its arguments.
+ * @param {State} state
+ * @param {RigView} rigView
+ * @returns {{name: string, study: StudyKind, args: Record<string, any>}}
+ */
 function studyOf(state, rigView) {
   const {view} = state;
   const {fields, maps} = rigView;
@@ -115,7 +144,11 @@ function studyOf(state, rigView) {
   return {name, study, args};
 }
 
-/** Entries of the view that a study takes, each with the argument of its task. */
+/**
+ * Entries of the view that a study takes, each with the argument of its task.
+ * @param {StudyKind} study
+ * @returns {string[][]}
+ */
 const argumentsOf = ({texts = [], hasBodies}) => [
   ...texts,
   ...(hasBodies
@@ -126,31 +159,48 @@ const argumentsOf = ({texts = [], hasBodies}) => [
     : []),
 ];
 
+/** @param {string} label */
 const plain = (label) => label.replaceAll('\n', ' ').toLowerCase();
 
-/** Field of the operating point that an axis shows; undefined where none does. */
+/**
+ * Field of the operating point that an axis shows; undefined where none does.
+ * @param {Axis} axis
+ * @param {RigField[]} fields
+ */
 function fieldOf(axis, fields) {
   const label = plain(axis.label ?? '');
+  /** @param {RigField} field */
   const named = (field) => label && (label.endsWith(plain(field.label)) || plain(field.label).endsWith(label));
   return fields.find((field) => plain(field.label) === label) ?? fields.filter((field) => field.is_first).find(named);
 }
 
+/** @param {Axis} axis */
 const unitOf = (axis) => (axis.unit ?? '').replace('µ', 'u'); // as it is typed
 
-/** Number of a field in the unit of an axis, as the server gives it; undefined where there is none. */
+/**
+ * Number of a field in the unit of an axis, as the server gives it; undefined where there is none.
+ * @param {Axis} axis
+ * @param {RigField|undefined} field
+ */
 const numberOn = (axis, field) => field?.numbers[unitOf(axis)];
 
-/** Chart with the operating point of the rig: a rule where only x is of the rig, a point where both axes are. */
+/**
+ * Chart with the operating point of the rig: a rule where only x is of the rig, a point where both axes are.
+ * @param {ChartData} chart
+ * @param {RigField[]} fields
+ * @returns {ChartData}
+ */
 function withPoint(chart, fields) {
   const panels = chart.panels.map((panel) => {
     const isMap = Boolean(drawnField(panel));
     const x = numberOn(panel.x, fieldOf(panel.x, fields));
     const y = isMap ? numberOn(panel.y, fieldOf(panel.y, fields)) : undefined;
-    const known =
-      panel.parts.find((part) => part.kind === 'field' || part.kind === 'line')?.x.filter((value) => value !== null) ??
-      [];
+    /** @type {(number|null)[]} */
+    const values = panel.parts.find((part) => part.kind === 'field' || part.kind === 'line')?.x ?? [];
+    const known = values.filter((value) => value !== null);
     const isThere = x !== undefined && x >= Math.min(...known) && x <= Math.max(...known);
     if (!isThere || panel.parts.some((part) => part.kind === 'rule' && part.along === 'x')) return panel;
+    /** @type {Part} */
     const point =
       y === undefined
         ? {kind: 'rule', along: 'x', value: x, label: 'operating point', colour: isMap ? '#d55e00' : '#666666', dash: 3}
@@ -160,7 +210,10 @@ function withPoint(chart, fields) {
   return {...chart, panels};
 }
 
-/** Choice among names, each with its title, as a row of buttons. */
+/**
+ * Choice among names, each with its title, as a row of buttons.
+ * @param {{group: string, legend: string, titles: string[][], chosen: string, choose: (partial: Texts) => void}} props
+ */
 export const Choices = ({
   group,
   legend,
@@ -183,8 +236,12 @@ export const Choices = ({
   )}
 </fieldset>`;
 
-/** Choice of a study, and of the kind of a map. */
+/**
+ * Choice of a study, and of the kind of a map.
+ * @param {{name: string, view: Texts, rigView: RigView}} props
+ */
 function Studies({name, view, rigView}) {
+  /** @param {Edits} partial */
   const choose = (partial) => change({view: {from: null, to: null, duration: null, fixed: null, ...partial}});
   return html`
     <${Choices}
@@ -207,10 +264,14 @@ function Studies({name, view, rigView}) {
   `;
 }
 
-/** Texts that a study takes beside the rig. */
+/**
+ * Texts that a study takes beside the rig.
+ * @param {{study: StudyKind, view: Texts, faults: Fault[], over: any}} props
+ */
 function StudyTexts({study, view, faults, over}) {
   const fields = study.texts ?? [];
   if (!fields.length) return null;
+  /** @param {string} argument */
   const faultOf = (argument) => faults.find((fault) => fault.key === argument)?.text;
   return html`<div class="study-texts">
     ${
@@ -220,7 +281,12 @@ function StudyTexts({study, view, faults, over}) {
           id="study-key"
           value=${over.field.key}
           data-test="study-text:key"
-          choices=${over.numbers.map(({key, label}) => [key, `${label} (${key.slice(0, key.lastIndexOf('.'))})`])}
+          choices=${
+            /** @type {RigField[]} */ (over.numbers).map(({key, label}) => [
+              key,
+              `${label} (${key.slice(0, key.lastIndexOf('.'))})`,
+            ])
+          }
           onChange=${(event) => change({view: {key: event.target.value, from: null, to: null}})}
         />
       <//>`
@@ -246,7 +312,12 @@ function StudyTexts({study, view, faults, over}) {
   </div>`;
 }
 
-/** Answer of a study: at once, or as a job where it takes long; while the rig moves, that of the last rest. */
+/**
+ * Answer of a study: at once, or as a job where it takes long; while the rig moves, that of the last rest.
+ * @param {StudyKind} study
+ * @param {object} args
+ * @param {boolean} isMoving
+ */
 function useStudy(study, args, isMoving) {
   const rest = useRef(args);
   if (!isMoving) rest.current = args;
@@ -267,15 +338,17 @@ function useStudy(study, args, isMoving) {
   return {...direct, isOld: isMoving || direct.isWaiting || Boolean(direct.failure), job: null};
 }
 
-/** A study: what it takes, its figures, numbers and caveats; made anew for another study. */
+/**
+ * A study: what it takes, its figures, numbers and caveats; made anew for another study.
+ * @param {{study: StudyKind, args: Record<string, any>, fields: RigField[], title: string}} props
+ */
 function Study({study, args, fields, title}) {
   const {state, isMoving} = useApp();
   const {content, failure, refused, isWaiting, isOld, job, of} = useStudy(study, args, isMoving);
   const [note, setNote] = useState('');
   const [runsNote, takeRuns] = useFile('runs');
   const charts = useMemo(
-    () =>
-      (content?.charts ?? []).filter((one) => one.chart).map((one) => ({...one, chart: withPoint(one.chart, fields)})),
+    () => (content ? drawings(content).map((one) => ({...one, chart: withPoint(one.chart, fields)})) : []),
     [content, fields],
   );
   const own = argumentsOf(study).map(([, argument]) => argument);
@@ -363,20 +436,20 @@ export default function Explore() {
   const {state} = useApp();
   const {view: rigView} = useRig();
   const fields = rigView?.fields ?? [];
-  const {name, study, args} = rigView ? studyOf(state, rigView) : {};
-  useEffect(() => (args ? offer(study.task, args) : undefined), [JSON.stringify(args)]);
+  const asked = rigView && studyOf(state, rigView);
+  useEffect(() => (asked ? offer(asked.study.task, asked.args) : undefined), [JSON.stringify(asked?.args)]);
   const lead = html`
     <p class="overline">Explore</p>
     <h1 class="statement">Choose an operating point</h1>
-    ${rigView && html`<${Studies} name=${name} view=${state.view} rigView=${rigView} />`}
+    ${asked && html`<${Studies} name=${asked.name} view=${state.view} rigView=${rigView} />`}
   `;
   return html`<${Workspace} lead=${lead}>
     ${
-      args &&
+      asked &&
       html`<${Study}
-        key=${[name, args.kind, state.view.key, state.rig.name].join(' ')}
-        study=${study}
-        args=${args}
+        key=${[asked.name, asked.args.kind, state.view.key, state.rig.name].join(' ')}
+        study=${asked.study}
+        args=${asked.args}
         fields=${fields}
         title=${rigView.title}
       />`
@@ -384,25 +457,40 @@ export default function Explore() {
   <//>`;
 }
 
-/** Axes of a panel that are of the rig: those of x, and of y where a field lies over both. */
+/**
+ * Axes of a panel that are of the rig: those of x, and of y where a field lies over both.
+ * @param {Panel} panel
+ * @param {RigField[]} fields
+ * @returns {[Name, RigField][]}
+ */
 function pickedOf(panel, fields) {
+  /** @type {Name[]} */
   const names = drawnField(panel) ? ['x', 'y'] : ['x'];
-  return names.map((name) => [name, fieldOf(panel[name], fields)]).filter(([, field]) => field);
+  return names.flatMap((name) => {
+    const field = fieldOf(panel[name], fields);
+    return field ? [/** @type {[Name, RigField]} */ ([name, field])] : [];
+  });
 }
 
-/** Set the rig to a place of a panel; returns what is said of it. */
+/**
+ * Set the rig to a place of a panel; returns what is said of it.
+ * @param {{panel: number, x: number, y: number}} at
+ * @param {ChartData} chart
+ * @param {RigField[]} fields
+ * @param {State} state
+ */
 function pick(at, chart, fields, state) {
   const panel = chart.panels[at.panel];
-  const found = pickedOf(panel, fields).map(([name, field]) => [field, typed(at[name], unitOf(panel[name]))]);
+  const found = pickedOf(panel, fields).map(([name, field]) => ({field, text: typed(at[name], unitOf(panel[name]))}));
   if (!found.length) return '';
   const {rig} = state;
   const drawn = rigOf(state).changes;
   const isMap = Boolean(drawnField(panel));
   const fixed = {
     ...fixedOf(state),
-    ...Object.fromEntries(found.map(([field, text]) => [field.key, [text, drawn[field.key] ?? null]])),
+    ...Object.fromEntries(found.map(({field, text}) => [field.key, [text, drawn[field.key] ?? null]])),
   };
-  const changes = {...rig.changes, ...Object.fromEntries(found.map(([field, text]) => [field.key, text]))};
+  const changes = {...rig.changes, ...Object.fromEntries(found.map(({field, text}) => [field.key, text]))};
   change({rig: {...rig, changes}, ...(isMap && {view: {fixed: JSON.stringify(fixed)}})});
-  return `Set ${found.map(([field, text]) => `${field.label} to ${text}`).join(' and ')}.`;
+  return `Set ${found.map(({field, text}) => `${field.label} to ${text}`).join(' and ')}.`;
 }

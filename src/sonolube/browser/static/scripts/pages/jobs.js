@@ -2,13 +2,23 @@
  * Page Jobs and runs: long computations and runs of the laboratory in one list, with their state, results and files.
  */
 import {html, useEffect, useState} from '../../vendor/htm-preact-3.1.1.js';
-import {Blocks, Caveats} from '../answer.js';
+import {Blocks, Caveats, drawings} from '../answer.js';
 import {ask, useConnection} from '../api.js';
 import {Chart} from '../chart.js';
 import {duration, isActive, isOwn, JobProgress, progressText, secondsOf} from '../job.js';
 import {Button, classes, fileOf, Loading, Refusal, Select, Sheet} from '../parts.js';
 import {change, settle, useApp} from '../state.js';
 import {offer} from '../take-away.js';
+
+/**
+ * @import {Job} from '../job.js'
+ * @import {FieldEvent} from '../parts.js'
+ * @import {ChangeOptions, Texts} from '../state.js'
+ * @typedef {{id: string, title: string, state: string, created: number, duration?: number, device: string, rig?:
+ *   string, protocol: string, seed: number|null, recordings: number, version?: string, reason?: string}} RunEntry
+ * @typedef {{kind: 'job'|'run', id: string, title: string, state: string, created: number, seconds: number, reason?:
+ *   string, task?: string, of?: string, job?: Job}} ListedRow
+ */
 
 const [QUICK, SLOW] = [700, 5000]; // ms between looks while a job is active, and otherwise
 const KINDS = [
@@ -27,22 +37,25 @@ function useWatched(path, isBusy) {
   const [turn, look] = useState(0);
   const {generation} = useConnection();
   useEffect(() => {
-    let timer = 0; // null when no longer shown
+    let [timer, isShown] = [0, true];
     ask(path).then(({content, failure}) => {
-      if (timer === null) return;
+      if (!isShown) return;
       if (content) setFound(content);
-      if (content || failure.kind === 'offline' || failure.kind === 'link')
+      if (content || failure?.kind === 'offline' || failure?.kind === 'link')
         timer = setTimeout(() => look((old) => old + 1), isBusy(content) ? QUICK : SLOW);
     });
     return () => {
       clearTimeout(timer);
-      timer = null;
+      isShown = false;
     };
   }, [turn, generation]);
   return {found, look: () => look((old) => old + 1)};
 }
 
-/** What a run of the laboratory is of, as a line. */
+/**
+ * What a run of the laboratory is of, as a line.
+ * @param {RunEntry} run
+ */
 const ofRun = ({device, rig, protocol, seed, recordings, version}) =>
   [
     version && `sonolube ${version}`,
@@ -55,14 +68,25 @@ const ofRun = ({device, rig, protocol, seed, recordings, version}) =>
     .filter(Boolean)
     .join(', ');
 
-/** Jobs and runs as rows of one list, the latest first. */
-const listed = (jobs, runs) =>
-  [
-    ...jobs.map((job) => ({...job, kind: 'job', title: job.label || job.task, job})),
-    ...runs.map((run) => ({...run, kind: 'run', of: ofRun(run), seconds: run.duration ?? 0})),
-  ].sort((one, other) => other.created - one.created);
+/**
+ * Jobs and runs as rows of one list, the latest first.
+ * @param {Job[]} jobs
+ * @param {RunEntry[]} runs
+ */
+function listed(jobs, runs) {
+  /** @type {ListedRow[]} */
+  const rows = [
+    ...jobs.map((job) => ({...job, kind: /** @type {const} */ ('job'), title: job.label || job.task, job})),
+    ...runs.map((run) => ({...run, kind: /** @type {const} */ ('run'), of: ofRun(run), seconds: run.duration ?? 0})),
+  ];
+  return rows.sort((one, other) => other.created - one.created);
+}
 
-/** Rows that the view asks for. */
+/**
+ * Rows that the view asks for.
+ * @param {ListedRow[]} rows
+ * @param {{kind?: string, search?: string}} view
+ */
 function filtered(rows, {kind, search = ''}) {
   const words = search.toLowerCase().split(/\s+/).filter(Boolean);
   return rows.filter(
@@ -74,9 +98,12 @@ function filtered(rows, {kind, search = ''}) {
   );
 }
 
-/** Result of a job, or record of a run: figures, text, caveats, files. */
+/**
+ * Result of a job, or record of a run: figures, text, caveats, files.
+ * @param {{kind: 'job'|'run', id: string}} props
+ */
 function Result({kind, id}) {
-  const [reply, setReply] = useState({});
+  const [reply, setReply] = useState(/** @type {Partial<import('../api.js').Reply>} */ ({}));
   const [request, setRequest] = useState(null);
   useEffect(() => {
     const reading = new AbortController(); // which closing ends
@@ -89,16 +116,18 @@ function Result({kind, id}) {
   const {content, failure} = reply;
   if (failure) return html`<${Refusal} text=${failure.text} role="alert" />`;
   if (!content) return html`<${Loading}>Reading the ${kind === 'run' ? 'recording; Close ends it' : 'result'}…<//>`;
+  /** @type {string[]} */
+  const files = content.files ?? [];
   return html`<div data-test=${`${kind}-result`}>
-    ${content.charts.filter((one) => one.chart).map((one) => html`<${Chart} key=${one.name} ...${one} />`)}
+    ${drawings(content).map((one) => html`<${Chart} key=${one.name} ...${one} />`)}
     <${Blocks} blocks=${content.blocks} />
     <${Caveats} answer=${content} isMoving=${false} of=${id} hasFields=${false} />
     ${
-      content.files?.length > 0 &&
+      files.length > 0 &&
       html`
         <h3>Files</h3>
         <ul class="caveat-list">
-          ${content.files.map(
+          ${files.map(
             (name) => html`<li key=${name} class="is-file">
               <a href=${fileOf(id, name)} download=${name.split('/').at(-1)}>${name}</a>
             </li>`,
@@ -109,7 +138,10 @@ function Result({kind, id}) {
   </div>`;
 }
 
-/** What stops or deletes a job. */
+/**
+ * What stops or deletes a job.
+ * @param {{job: Job, look: () => void, isOpen: boolean}} props
+ */
 function JobButtons({job, look, isOpen}) {
   const [isAsked, setAsked] = useState(false);
   const name = job.label || job.task;
@@ -139,6 +171,7 @@ function JobButtons({job, look, isOpen}) {
   `;
 }
 
+/** @param {{row: ListedRow, isOpen: boolean, look: () => void}} props */
 function Row({row, isOpen, look}) {
   const {kind, id, title, job} = row;
   const open = () => change({view: {job: null, run: null, ...(!isOpen && {[kind]: id})}});
@@ -154,7 +187,7 @@ function Row({row, isOpen, look}) {
         <span class=${`tag${['done', 'completed'].includes(row.state) ? ' is-new' : ''}`} data-test=${`${kind}-state`}>
           ${row.state}
         </span>
-        ${isActive(job) && html`<${JobProgress} job=${job} /><span>${progressText(job)}</span>`}
+        ${job && isActive(job) && html`<${JobProgress} job=${job} /><span>${progressText(job)}</span>`}
         ${
           (job ? secondsOf(job) : row.seconds) >= 0.05 &&
           html`<span class="hint">${duration(job ? secondsOf(job) : row.seconds)}</span>`
@@ -186,8 +219,11 @@ export default function Jobs() {
   } = useApp();
   const {found, look} = useWatched('api/jobs', (content) => content?.jobs.some(isActive));
   const {found: lab} = useWatched('api/lab/runs', () => false);
+  /** @type {string[]} */
+  const caveats = lab?.caveats ?? [];
   const rows = found ? listed(found.jobs, lab?.runs ?? []) : [];
   const shown = filtered(rows, view);
+  /** @param {string} name @param {ChangeOptions} [options] @returns {(event: FieldEvent) => void} */
   const set = (name, options) => (event) => change({view: {[name]: event.target.value || null}}, options);
   return html`<${Sheet} title="Jobs and runs">
     <p class="hint">
@@ -232,7 +268,7 @@ export default function Jobs() {
           </div>
           <p role="status" data-test="job-count">${shown.length} of ${rows.length}</p>
         </div>
-        ${lab?.caveats?.map((line) => html`<p key=${line} class="notice is-warning">${line}</p>`)}
+        ${caveats.map((line) => html`<p key=${line} class="notice is-warning">${line}</p>`)}
         <ul class="jobs" data-test="jobs">
           ${shown.map(
             (row) => html`<${Row}

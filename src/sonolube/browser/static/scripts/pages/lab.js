@@ -15,21 +15,36 @@ import {RigChoice, useRig} from '../rig-panel.js';
 import {change, pack, settle, unpack, useApp} from '../state.js';
 import {save} from '../take-away.js';
 
+/**
+ * @import {Answer, Failure as Refused} from '../api.js'
+ * @import {Laboratory} from '../lab/lab.js'
+ * @import {Wrong} from '../lab/time-line.js'
+ * @import {RigState, Texts} from '../state.js'
+ * @typedef {{name: string, text?: string}} Named protocol
+ * @typedef {Omit<Answer, 'of'> & {named: Named|undefined, edit: (changes: object) => Promise<boolean>, wrong:
+ *   Wrong|null, isBusy: boolean}} ProtocolPlan the protocol with its time line and dry run
+ */
+
 const USUAL = 'map_test';
 const TEXTS = [
   ['seed', 'Seed', '0'],
   ['tags', 'Tags', 'one, another'],
   ['facts', 'Facts', 'operator=Ann, humidity=45 %'],
 ];
+/** @param {string} text */
 const listOf = (text = '') =>
   text
     .split(',')
     .map((each) => each.trim())
     .filter(Boolean);
 
-/** Protocol of the view: its name, and its text where it was edited or opened; undefined while that is unpacked. */
+/**
+ * Protocol of the view: its name, and its text where it was edited or opened; undefined while that is unpacked.
+ * @param {Texts} view
+ * @returns {Named|undefined}
+ */
 function useNamed({protocol: name = USUAL, steps}) {
-  const [{of, text}, setFound] = useState({});
+  const [{of, text}, setFound] = useState({of: '', text: ''});
   useEffect(() => {
     if (steps)
       unpack(steps).then(
@@ -41,12 +56,19 @@ function useNamed({protocol: name = USUAL, steps}) {
   return of === steps ? {name, text} : undefined;
 }
 
-/** Make a text the protocol of the view. */
+/**
+ * Make a text the protocol of the view.
+ * @param {string} name
+ * @param {string} text
+ */
 const keep = async (name, text) => change({view: {protocol: name, steps: await pack(text)}});
 
 /**
  * The protocol of the view with its time line and dry run, and what edits it; `wrong` is the entry that was refused
  * last.
+ * @param {Texts} view
+ * @param {RigState} rig
+ * @returns {ProtocolPlan}
  */
 function usePlan(view, rig) {
   const named = useNamed(view);
@@ -57,7 +79,9 @@ function usePlan(view, rig) {
   useEffect(() => setWrong(null), [of]);
   const own = edited?.of === of ? edited.content : null;
   const reply = useReply('protocol', named && rig.name && !own ? 'api/protocol' : null, {protocol: named, rig});
+  /** @param {object} changes */
   const edit = async (changes) => {
+    if (!named) return false;
     setEditing(true);
     const {content, failure} = await ask('api/edit_protocol', {body: {protocol: named, changes, rig}});
     const [[key, typed]] = Object.entries(changes);
@@ -70,8 +94,11 @@ function usePlan(view, rig) {
     setEditing(false);
     return !failure;
   };
+  const {content, failure, refused} = own ? {content: own, failure: null, refused: []} : reply;
   return {
-    ...(own ? {content: own, refused: []} : reply),
+    content,
+    failure,
+    refused,
     named,
     edit,
     wrong,
@@ -79,10 +106,13 @@ function usePlan(view, rig) {
   };
 }
 
-/** What a run is begun with, and its start. */
+/**
+ * What a run is begun with, and its start.
+ * @param {{lab: Laboratory, view: Texts, rig: RigState, plan: ProtocolPlan, isFree: boolean}} props
+ */
 function Start({lab, view, rig, plan: {named, content, failure: fault, wrong, isBusy}, isFree}) {
   const isPossible = content?.refusals.length === 0;
-  const [failure, setFailure] = useState(null);
+  const [failure, setFailure] = useState(/** @type {Refused|null} */ (null));
   const [isAnyway, setAnyway] = useState(false);
   const isVirtual = lab.devices.kind === 'virtual';
   const start = async () => {
@@ -142,10 +172,15 @@ function Start({lab, view, rig, plan: {named, content, failure: fault, wrong, is
   </section>`;
 }
 
-/** Choice of a protocol, its time line, and the dry run beside it. */
+/**
+ * Choice of a protocol, its time line, and the dry run beside it.
+ * @param {{lab: Laboratory, plan: ProtocolPlan, start: any}} props
+ */
 function Plan({lab, plan, start}) {
   const {named, content, failure, refused, edit, wrong, isBusy} = plan;
   const isOwn = named?.text !== undefined;
+  /** @type {string[]} */
+  const refusals = content?.refusals ?? [];
   const choices = lab.protocols.map(({name, title}) => [name, title]);
   return html`<${Card} id="plan-title" title="Protocol" data-test="plan">
     <${RigChoice} view=${useRig().view} />
@@ -169,7 +204,7 @@ function Plan({lab, plan, start}) {
         Open…
       <//>
       <${Button}
-        onClick=${() => save({name: `${named.name}.toml`, kind: 'application/toml', text: content.text})}
+        onClick=${() => save({name: `${named?.name}.toml`, kind: 'application/toml', text: content.text})}
         disabled=${!content}
         data-test="save-protocol"
       >
@@ -187,10 +222,10 @@ function Plan({lab, plan, start}) {
           <section aria-labelledby="dry-run-title" aria-busy=${isBusy} data-test="dry-run">
             <h2 id="dry-run-title">Dry run</h2>
             ${
-              content.refusals.length > 0 &&
+              refusals.length > 0 &&
               html`<${Warning} data-test="impossible">
                 <strong>Impossible on this rig:</strong>
-                ${content.refusals.map((line) => html`<p key=${line}>${line}</p>`)}
+                ${refusals.map((line) => html`<p key=${line}>${line}</p>`)}
               <//>`
             }
             <${Shown} answer=${content.dry_run} of=${content.text} />
@@ -201,9 +236,13 @@ function Plan({lab, plan, start}) {
   <//>`;
 }
 
-/** Who holds the laboratory, and its last run where that was lost. */
+/**
+ * Who holds the laboratory, and its last run where that was lost.
+ * @param {{lab: Laboratory}} props
+ */
 function Holder({lab}) {
   const [failure, setFailure] = useState(null);
+  /** @param {string} what @param {object} [more] @param {boolean} [isHeld] */
   const to = async (what, more, isHeld) => setFailure((await send(what, more, {isHeld})).failure ?? null);
   const {is_me: isMe, is_free: isFree} = lab.holder;
   return html`

@@ -2,7 +2,7 @@
  * Page Modes: natural modes, tuning and impedance of a part, as a job; its modes in motion, tables, drawing and files.
  */
 import {html, useEffect, useMemo, useState} from '../../vendor/htm-preact-3.1.1.js';
-import {Blocks, Caveats, TextTable} from '../answer.js';
+import {Blocks, Caveats, drawings} from '../answer.js';
 import {ask, useReply} from '../api.js';
 import {Chart} from '../chart.js';
 import {Labelled, NOTHING, refusedBy, TextField, uploadOf, useFile} from '../fields.js';
@@ -12,12 +12,33 @@ import {change, settle, useApp} from '../state.js';
 import {MovingSurface} from '../surface-view.js';
 import {offer} from '../take-away.js';
 
+/**
+ * @import {Content} from '../answer.js'
+ * @import {Texts} from '../state.js'
+ * @typedef {{name: string, is_horn: boolean, is_transducer: boolean, sizes: {name: string, label: string, start?:
+ *   string, default?: string}[]}} Part
+ * @typedef {{parts: Part[], material: string, materials: [string, string][]}} Known parts and materials of the server
+ * @typedef {[string, string, string, ((text: string) => any)?]} Text argument, label, usual value, way from the text
+ * @typedef {{accept: string, entry: string, choose: string}} ChosenFile
+ * @typedef {{title: string, task: string, args: object, texts: Text[], part?: string, isOffered?: (part: Part) =>
+ *   boolean, accept?: string, entry?: string, choose?: string}} Work
+ * @typedef {{name: string, work: Work, args: any, file: Partial<ChosenFile>|null, offered?: Part[], part?: Part|null}}
+ *   Asked
+ * @typedef {{name: string, frequency: string, shape: string, stress?: string, peak_stress: number|null, reference:
+ *   string, end_ratio?: number|null, nodal_planes?: number[]|null}} Mode
+ * @typedef {{positions: Float32Array, triangles: Uint32Array, axis: string, modes: Mode[]}} Shapes
+ */
+
+/** @param {string} text @returns {string[]} */
 const list = (text) => text.split(/[\s;]+/).filter(Boolean);
+/** @type {[string, string]} */
 const ERROR = ['tolerance', 'Largest error of a frequency, which sets the mesh'];
+/** @type {Text} */
 const AMPLITUDE = ['amplitude', 'Amplitude of the working end, for its stress', 'none'];
 /**
  * What is computed of a part: task, part to begin with, arguments as text with label, usual value and, where it is no
  * text, the way to it.
+ * @type {Record<string, Work>}
  */
 const WORKS = {
   modes: {
@@ -87,44 +108,50 @@ const STEP = {accept: '.step,.stp', entry: 'step', choose: 'Choose a STEP file�
 const SHAPES = 'mode-shapes.json';
 const [DRAWN, SIZE] = [0.08, 'size.']; // the largest displacement over the longest side; entries of sizes
 
-/** What the view asks for: its work, part, and arguments; these are null while a file is missing. */
+/**
+ * What the view asks for: its work, part, and arguments; these are null while a file is missing.
+ * @param {Texts} view
+ * @param {Known} known
+ * @returns {Asked}
+ */
 function askedOf(view, known) {
   const name = Object.hasOwn(WORKS, view.work) ? view.work : 'modes';
   const work = WORKS[name];
-  const given = work.texts
+  const typed = work.texts
     .map(([argument, , , read = String]) => [argument, read(view[`${name}.${argument}`] ?? '')])
     .filter(([, value]) => value.length !== 0 && value !== 0);
-  const args = {...work.args, ...Object.fromEntries(given)};
+  const args = {...work.args, ...Object.fromEntries(typed)};
   if (name === 'foreign')
     return {name, work, file: work, args: view.shapes ? {...args, from_file: uploadOf(view.shapes)} : null};
-  const offered = known.parts.filter(work.isOffered);
-  const part = offered.find((each) => each.name === view.part) ?? offered.find((each) => each.name === work.part);
-  const isStep = view.part === 'step';
-  const sizes = isStep
-    ? []
-    : part.sizes
-        .map(({name: size, start}) => [size, view[SIZE + size] ?? (name === 'tune' ? '' : start)])
-        .filter(([, text]) => text);
-  const material = isStep || !part.is_transducer ? {material: view.material ?? known.material} : {};
+  const offered = known.parts.filter((each) => work.isOffered?.(each));
+  const named = offered.find((each) => each.name === view.part) ?? offered.find((each) => each.name === work.part);
+  const part = view.part === 'step' ? undefined : named;
+  const sizes = (part?.sizes ?? [])
+    .map(({name: size, start}) => [size, view[SIZE + size] ?? (name === 'tune' ? '' : start)])
+    .filter(([, text]) => text);
+  const material = part?.is_transducer ? {} : {material: view.material ?? known.material};
+  const given = part?.name ?? (view.step && uploadOf(view.step));
   return {
     name,
     work,
     offered,
-    part: isStep ? null : part,
-    file: isStep ? STEP : null,
-    args:
-      isStep && !view.step
-        ? null
-        : {
-            part: isStep ? uploadOf(view.step) : part.name,
-            ...(sizes.length && {sizes: Object.fromEntries(sizes)}),
-            ...(name !== 'impedance' && material),
-            ...args,
-          },
+    part: part ?? null,
+    file: part ? null : STEP,
+    args: given
+      ? {
+          part: given,
+          ...(sizes.length && {sizes: Object.fromEntries(sizes)}),
+          ...(name !== 'impedance' && material),
+          ...args,
+        }
+      : null,
   };
 }
 
-/** Field of an entry of the view. */
+/**
+ * Field of an entry of the view.
+ * @param {{entry: string, label: string, usual?: string, view: Texts, refusal?: string}} props
+ */
 function Entry({entry, label, usual, view, refusal}) {
   const id = `modes-${entry.replace('.', '-')}`;
   return html`<${Labelled} id=${id} label=${label} refusal=${refusal}>
@@ -140,11 +167,17 @@ function Entry({entry, label, usual, view, refusal}) {
   <//>`;
 }
 
-/** Part, its sizes, and what else the work takes. */
+/**
+ * Part, its sizes, and what else the work takes.
+ * @param {{asked: Asked, known: Known, view: Texts, reason: string}} props
+ */
 function Panel({asked: {name, work, offered, part, file, args}, known, view, reason}) {
-  const [note, take] = useFile(file?.entry ?? 'step');
+  const entry = file?.entry ?? 'step';
+  const [note, take] = useFile(entry);
+  const chosen = view[entry];
+  /** @param {string} argument */
   const refusalOf = (argument) => (reason.split(/[ :]/)[0] === argument ? reason : undefined);
-  const parts = offered?.map((each) => [each.name, words(each.name)]);
+  const parts = (offered ?? []).map((each) => [each.name, words(each.name)]);
   return html`<aside class="rig" aria-label="Part" data-test="part-panel">
     ${
       offered &&
@@ -171,7 +204,7 @@ function Panel({asked: {name, work, offered, part, file, args}, known, view, rea
           >
             ${file.choose}
           <//>
-          ${view[file.entry] && html`<strong class="grow">${uploadOf(view[file.entry]).name}</strong>`}
+          ${chosen && html`<strong class="grow">${uploadOf(chosen).name}</strong>`}
         </p>
         <${Refusal} text=${note} role="alert" />
       </div>`
@@ -220,14 +253,24 @@ function Panel({asked: {name, work, offered, part, file, args}, known, view, rea
   </aside>`;
 }
 
-/** Typed array of a text in base 64. */
+/**
+ * Typed array of a text in base 64.
+ * @template T
+ * @param {string} text
+ * @param {new (buffer: ArrayBuffer) => T} Kind
+ * @returns {T}
+ */
 const numbersOf = (text, Kind) => new Kind(Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)).buffer);
 
-/** Job that gave an answer, with its surface and modes where it has them; null before they are read. */
+/**
+ * Job that gave an answer, with its surface and modes where it has them; null before they are read.
+ * @param {{job: import('../job.js').Job|null, content: any, isOld: boolean}} job
+ * @returns {(Partial<Shapes> & {id: string})|null}
+ */
 function useShapes({job, content, isOld}) {
-  const [found, setFound] = useState({});
+  const [found, setFound] = useState(/** @type {Partial<Shapes> & {id: string, of: any}} */ ({id: '', of: null}));
   useEffect(() => {
-    if (!content || isOld) return;
+    if (!content || isOld || !job) return;
     if (!content.files.includes(SHAPES)) setFound({id: job.id, of: content});
     else
       ask(fileOf(job.id, SHAPES)).then(
@@ -246,20 +289,32 @@ function useShapes({job, content, isOld}) {
   return content && found.of === content ? found : null;
 }
 
-/** Lengths of vectors, as values of the vertices. */
+/**
+ * Lengths of vectors, as values of the vertices.
+ * @param {Float32Array} vectors
+ */
 const lengthsOf = (vectors) =>
   Float32Array.from({length: vectors.length / 3}, (_, at) => Math.hypot(...vectors.subarray(3 * at, 3 * at + 3)));
-/** Largest of some numbers. */
+/**
+ * Largest of some numbers.
+ * @param {Float32Array} values
+ */
 const most = (values) => values.reduce((largest, each) => Math.max(largest, each), -Infinity);
 
-/** Modes in a table, and the chosen one in motion. */
+/**
+ * Modes in a table, and the chosen one in motion.
+ * @param {{shapes: Shapes, view: Texts, tuned?: string}} props
+ */
 function Modes({shapes, view, tuned}) {
   const {modes, positions, triangles, axis} = shapes;
   const chosen = modes.find((mode) => mode.name === (view.mode ?? tuned)) ?? modes[0];
   const isStress = view.colour === 'stress' && Boolean(chosen.stress);
   const shape = useMemo(() => numbersOf(chosen.shape, Float32Array), [chosen]);
   const sizes = useMemo(() => lengthsOf(shape), [shape]);
-  const values = useMemo(() => (isStress ? numbersOf(chosen.stress, Float32Array) : sizes), [chosen, isStress, sizes]);
+  const values = useMemo(
+    () => (isStress ? numbersOf(chosen.stress ?? '', Float32Array) : sizes),
+    [chosen, isStress, sizes],
+  );
   const side = useMemo(
     () =>
       Math.max(
@@ -270,7 +325,9 @@ function Modes({shapes, view, tuned}) {
       ),
     [positions],
   );
+  /** @param {Mode} mode */
   const planes = ({nodal_planes: found}) => (found ? found.map((each) => each.toFixed(1)).join(', ') || 'none' : '–');
+  /** @param {Mode} mode */
   const ratio = ({end_ratio: found}) => found?.toPrecision(3) ?? '–';
   const heads = [
     'Mode',
@@ -355,7 +412,11 @@ function Modes({shapes, view, tuned}) {
   <//>`;
 }
 
-/** Answer of a job: modes, figures, drawing, numbers, caveats, files. */
+/**
+ * Answer of a job: modes, figures, drawing, numbers, caveats, files.
+ * @param {{content: Content & {files: string[]}, shapes: ReturnType<typeof useShapes>, isOld: boolean, view: Texts, of:
+ *   string}} props
+ */
 function Result({content, shapes, isOld, view, of}) {
   const files = content.files.filter((name) => name !== SHAPES);
   const drawing = files.find((name) => name.endsWith('-drawing.svg'));
@@ -381,9 +442,7 @@ function Result({content, shapes, isOld, view, of}) {
         }
       </div>
     </div>
-    ${content.charts
-      .filter((one) => one.chart)
-      .map((one) => html`<${Chart} key=${one.name} ...${one} dimmed=${isOld} />`)}
+    ${drawings(content).map((one) => html`<${Chart} key=${one.name} ...${one} dimmed=${isOld} />`)}
     ${
       shapes &&
       drawing &&
@@ -394,7 +453,10 @@ function Result({content, shapes, isOld, view, of}) {
   </div>`;
 }
 
-/** A work with its panel, job and answer; made anew for another work. */
+/**
+ * A work with its panel, job and answer; made anew for another work.
+ * @param {{asked: Asked, known: Known, view: Texts}} props
+ */
 function Work({asked, known, view}) {
   const {work, args} = asked;
   const key = JSON.stringify(args);

@@ -7,19 +7,35 @@ import {Button, capital, Card, classes, Loading, Refusal, Sheet, words} from '..
 import {openRigText} from '../rig-panel.js';
 import {change, settle, useApp} from '../state.js';
 
+/**
+ * @import {Fault} from '../api.js'
+ * @import {Texts} from '../state.js'
+ * @typedef {{description: string, 'x-unit'?: string}} Schema of an argument
+ */
+
 const PATH = '/api/tasks/new';
 const EITHER = ['amplitude', 'actuator']; // one of them is needed
 const FIRST = ['amplitude', 'actuator', 'voltage'];
 const FILES = ['scan', 'pin_scan'];
+/** @type {Texts} */
 const LISTS = {pin: 'materials', disc: 'materials', actuator: 'actuators'};
 const NAME = 'name';
 
-/** Argument of a view: an upload for a file, else its text. */
+/**
+ * Argument of a view: an upload for a file, else its text.
+ * @param {string} name
+ * @param {string} text
+ * @returns {any}
+ */
 const argument = (name, text) => (FILES.includes(name) ? uploadOf(text) : text);
 
+/** @param {string} name @returns {(text: string, isMoving: boolean) => void} */
 const give = (name) => (text, isMoving) => change({view: {[name]: text || null}}, {replace: isMoving});
 
-/** One question. */
+/**
+ * One question.
+ * @param {{name: string, schema: Schema, view: Texts, isNeeded: boolean, refusal?: string, list?: string}} props
+ */
 function Question({name, schema, view, isNeeded, refusal, list}) {
   const id = `new-${name}`;
   const [note, take] = useFile(name);
@@ -64,11 +80,18 @@ function Question({name, schema, view, isNeeded, refusal, list}) {
   </div>`;
 }
 
-/** Field that a refusal is of: by its key, else by the name with which its sentence begins. */
+/**
+ * Field that a refusal is of: by its key, else by the name with which its sentence begins.
+ * @param {Fault} fault
+ * @param {string[]} names
+ */
 const fieldOf = (fault, names) =>
   names.includes(fault.key) ? fault.key : (names.find((name) => new RegExp(`^${name}\\b`).test(fault.text)) ?? '');
 
-/** The rig that was made. */
+/**
+ * The rig that was made.
+ * @param {{answer: import('../answer.js').Content, name: string, isDim: boolean}} props
+ */
 function Made({answer, name, isDim}) {
   const {text, rig} = answer.answer;
   return html`<${Card} id="made-title" title=${rig} isDim=${isDim} data-test="made">
@@ -91,6 +114,7 @@ export default function NewRig() {
   const description = useReply('description', 'api/description', undefined);
   const materials = useReply('materials', 'api/materials', NOTHING);
   const actuators = useReply('actuators', 'api/tasks/actuators', NOTHING);
+  /** @type {{properties: Record<string, Schema>, required: string[]}|undefined} */
   const schema = description.content?.paths[PATH].post.requestBody.content['application/json'].schema;
   const names = Object.keys(schema?.properties ?? {});
   const args = Object.fromEntries(names.filter((name) => view[name]).map((name) => [name, argument(name, view[name])]));
@@ -110,6 +134,7 @@ export default function NewRig() {
   const faults = new Map(refused?.faults.map((fault) => [fault.key, fault.text]));
   const first = [...schema.required, ...FIRST];
   const others = names.filter((name) => !first.includes(name));
+  /** @param {string[]} some */
   const ask = (some) =>
     some.map(
       (name) => html`<${Question}

@@ -9,6 +9,15 @@ import {useRig, Workspace} from '../rig-panel.js';
 import {addressOf, change, decode, encode, present, setEntry, useApp} from '../state.js';
 import {offer} from '../take-away.js';
 
+/**
+ * @import {Block, Content} from '../answer.js'
+ * @import {ChartData} from '../chart-scale.js'
+ * @import {RigView} from '../rig-panel.js'
+ * @import {State, Texts} from '../state.js'
+ * @typedef {{label: string, answer: Content}} KeptAnswer
+ * @typedef {{kind: 'table', heads: string[], rows: string[][]}} TableBlock
+ */
+
 const MOVING_DRAWS = 1000;
 const MAX_KEPT = 3;
 const INTERVAL = '80 %';
@@ -16,7 +25,7 @@ const SPEED = 'sliding.sliding_speed';
 const AMPLITUDE = 'vibration.vibration_amplitude';
 const VOLTAGE = 'drive.voltage_peak_to_peak';
 const MEASURES_HEAD = 'what would narrow it';
-/** Fields that a line of advice is about, by a word in it. */
+/** Fields that a line of advice is about, by a word in it. @type {[RegExp, string[]][]} */
 const ADVISED = [
   [/decay length|stiffness/i, ['contact.decay_length', 'contact.normal_stiffness', 'contact.pair.effective_modulus']],
   [/dry friction/i, ['friction.friction_coefficient']],
@@ -25,7 +34,11 @@ const ADVISED = [
   [/run at this point/i, ['runs']],
 ];
 
-/** Arguments of the task for a state. */
+/**
+ * Arguments of the task for a state.
+ * @param {State} state
+ * @param {boolean} isMoving
+ */
 function argumentsOf(state, isMoving) {
   const {pin, disc, lubricant, runs} = state.view;
   return present({
@@ -38,17 +51,30 @@ function argumentsOf(state, isMoving) {
   });
 }
 
-const isTable = (block) => block.kind === 'table';
+/** Tables of an answer. @param {Content} answer @returns {TableBlock[]} */
+const tablesOf = ({blocks}) =>
+  blocks.flatMap(({kind, heads = [], rows = []}) => (kind === 'table' ? [{kind, heads, rows}] : []));
 
-/** Numbers of an answer by their labels, each as its median and interval: quantities, then the operating point. */
+/**
+ * Numbers of an answer by their labels, each as its median and interval: quantities, then the operating point.
+ * @param {Content} answer
+ * @returns {{quantities: Map<string, string[]>, point: Map<string, string[]>}}
+ */
 function numbersOf(answer) {
-  const {heads, rows} = answer.blocks.find(isTable);
+  const [{heads, rows}] = tablesOf(answer);
   const at = heads.indexOf(INTERVAL);
-  const point = (answer.answer.operating_point ?? []).map(({label, text}) => [label, text.split(/ (?=within )/)]);
-  return {quantities: new Map(rows.map((row) => [row[0], [row[1], row[at]]])), point: new Map(point)};
+  /** @type {{label: string, text: string}[]} */
+  const point = answer.answer.operating_point ?? [];
+  return {
+    quantities: new Map(rows.map((row) => [row[0], [row[1], row[at]]])),
+    point: new Map(point.map(({label, text}) => [label, text.split(/ (?=within )/)])),
+  };
 }
 
-/** The numbers on screen. */
+/**
+ * The numbers on screen.
+ * @param {{answer: Content}} props
+ */
 function Numbers({answer}) {
   const {quantities, point} = numbersOf(answer);
   return html`
@@ -65,9 +91,14 @@ function Numbers({answer}) {
   `;
 }
 
-/** What would narrow the interval, most first; a click opens what it is about. */
+/**
+ * What would narrow the interval, most first; a click opens what it is about.
+ * @param {{answer: Content, beside: Texts}} props
+ */
 function Sharpen({answer, beside}) {
-  const tables = answer.blocks.filter(isTable);
+  const tables = tablesOf(answer);
+  /** @type {string[]} */
+  const probes = answer.answer.stiffness_probes ?? [];
   const {
     heads: [what, left],
     rows,
@@ -100,18 +131,21 @@ function Sharpen({answer, beside}) {
     <details>
       <summary>Least known inputs</summary>
       <${TextTable} ...${tables.at(-1)} kind="table-frame" />
-      ${answer.answer.stiffness_probes?.map((line) => html`<p key=${line} class="hint">${line}</p>`)}
+      ${probes.map((line) => html`<p key=${line} class="hint">${line}</p>`)}
     </details>
   <//>`;
 }
 
-/** Files of own runs: dropped anywhere on the page, or chosen. */
+/**
+ * Files of own runs: dropped anywhere on the page, or chosen.
+ * @param {{view: Texts, onFile: (file: File) => void, note: string}} props
+ */
 function OwnRuns({view, onFile, note}) {
   const [help, setHelp] = useState('');
   const read = async () => {
     const {content, failure} = await ask('api/description');
     const schema = content?.paths['/api/tasks/predict'].post.requestBody.content['application/json'].schema;
-    setHelp(schema?.properties.runs.description ?? failure.text);
+    setHelp(schema?.properties.runs.description ?? failure?.text);
   };
   return html`<${Card} id="runs-title" title="Own runs" data-test="own-runs">
     <${RunsChoice} view=${view} onFile=${onFile} />
@@ -124,7 +158,10 @@ function OwnRuns({view, onFile, note}) {
   <//>`;
 }
 
-/** Materials and lubrication, which the task takes beside the rig. */
+/**
+ * Materials and lubrication, which the task takes beside the rig.
+ * @param {{view: Texts, faultOf: (name: string) => string|undefined, isFirst: boolean}} props
+ */
 const Materials = ({view, faultOf, isFirst}) => html`<fieldset class="fields materials">
   <legend>For wear and heat</legend>
   <${MaterialChoices} view=${view} faultOf=${faultOf} isAsked=${!isFirst} />
@@ -139,11 +176,15 @@ const Materials = ({view, faultOf, isFirst}) => html`<fieldset class="fields mat
   <${Refusal} text=${faultOf('lubricant')} />
 </fieldset>`;
 
-/** Answers that were kept, beside the answer of now. */
+/**
+ * Answers that were kept, beside the answer of now.
+ * @param {{kept: (KeptAnswer & {id: string})[], now: Content, onRemove: (id: string) => void}} props
+ */
 function Kept({kept, now, onRemove}) {
   if (!kept.length) return null;
-  const found = [...kept.map((one) => one.answer), now].map(numbersOf);
-  const {quantities, point} = found.at(-1);
+  const current = numbersOf(now);
+  const found = [...kept.map((one) => numbersOf(one.answer)), current];
+  const {quantities, point} = current;
   const rows = [
     ...[...quantities.keys()].map((name) => [
       name,
@@ -166,16 +207,23 @@ function Kept({kept, now, onRemove}) {
   <//>`;
 }
 
-/** Answers that were kept, by the fragment of their state. */
+/** Answers that were kept, by the fragment of their state. @type {Map<string, KeptAnswer>} */
 const keptAnswers = new Map();
 
-/** Name of a kept state: its changes, else its rig. */
+/**
+ * Name of a kept state: its changes, else its rig.
+ * @param {State} state
+ */
 function labelOf(state) {
   const texts = Object.values(state.rig.changes);
   return texts.length ? texts.slice(0, 3).join(', ') + (texts.length > 3 ? '…' : '') : state.rig.name;
 }
 
-/** States that the view keeps, with their answers; those that are not known yet are asked for. */
+/**
+ * States that the view keeps, with their answers; those that are not known yet are asked for.
+ * @param {State} state
+ * @param {any} content
+ */
 function useKept(state, content) {
   const [, draw] = useState({});
   const fragments = (state.view.kept ?? '').split('\n').filter(Boolean);
@@ -189,24 +237,43 @@ function useKept(state, content) {
         draw({});
       });
   }, [state.view.kept]);
+  /** @param {string[]} some */
   const enter = (some) => change({view: {kept: some.join('\n') || null}});
   const keep = () => {
     const fragment = encode({...state, view: present({...state.view, kept: null})});
     keptAnswers.set(fragment, {label: labelOf(state), answer: content});
     enter([...fragments.filter((each) => each !== fragment), fragment].slice(-MAX_KEPT));
   };
-  const kept = fragments.filter((each) => keptAnswers.has(each)).map((each) => ({id: each, ...keptAnswers.get(each)}));
-  return {kept, keep, remove: (fragment) => enter(fragments.filter((each) => each !== fragment))};
+  const kept = fragments.flatMap((each) => {
+    const answer = keptAnswers.get(each);
+    return answer ? [{id: each, ...answer}] : [];
+  });
+  /** @param {string} fragment */
+  const remove = (fragment) => enter(fragments.filter((each) => each !== fragment));
+  return {kept, keep, remove};
 }
 
-/** What dragging the rule of a panel sets, where a number follows from it without computing. */
+/**
+ * What dragging the rule of a panel sets, where a number follows from it without computing.
+ * @param {RigView|null} view
+ * @param {ChartData} chart
+ */
 function dragOf(view, chart) {
   const keys = new Set(view?.fields.map((field) => field.key));
   return [AMPLITUDE, SPEED].flatMap((key, panel) => {
     if (!keys.has(key) || (key === AMPLITUDE && keys.has(VOLTAGE))) return [];
-    const unit = chart.panels[panel]?.x.unit.replace('µ', 'u');
+    const unit = chart.panels[panel]?.x.unit?.replace('µ', 'u') ?? '';
+    /** @param {number} x @param {boolean} isMoving */
     const set = (x, isMoving) => setEntry(key, typed(x, unit), {replace: isMoving});
-    return [{panel, onMove: (x) => set(x, true), onRelease: (x) => set(x, false)}];
+    return [
+      {
+        panel,
+        /** @param {number} x */
+        onMove: (x) => set(x, true),
+        /** @param {number} x */
+        onRelease: (x) => set(x, false),
+      },
+    ];
   });
 }
 
@@ -220,6 +287,7 @@ export default function Predict() {
   const {content, failure, refused, isWaiting} = reply;
   const {kept, keep, remove} = useKept(state, content);
   useEffect(() => offer('predict', argumentsOf(state, false)), [JSON.stringify(body)]);
+  /** @param {string} key */
   const faultOf = (key) => failure?.faults.find((fault) => fault.key === key)?.text;
   const shown = [...Object.keys(state.rig.changes), 'pin', 'disc', 'lubricant'];
   const extra = html`<${Materials} view=${state.view} faultOf=${faultOf} isFirst=${!content && !failure} />`;
@@ -276,10 +344,12 @@ export default function Predict() {
         <div class="stack">
           <${Card} id="more-title" title="In words">
             ${[rest, ...others].filter(Boolean).map((line) => html`<p key=${line}>${line}</p>`)}
-            ${content.blocks
-              .slice(-2)
-              .filter(({kind}) => kind === 'text')
-              .map(({text}) => html`<p class="hint" key=${text}>${text}</p>`)}
+            ${
+              /** @type {Block[]} */ (content.blocks)
+                .slice(-2)
+                .filter(({kind}) => kind === 'text')
+                .map(({text}) => html`<p class="hint" key=${text}>${text}</p>`)
+            }
           <//>
           <section class="card" aria-label="Caveats and assumptions">
             <${Caveats} answer=${content} isMoving=${isMoving || isWaiting} of=${JSON.stringify(reply.of)} />
