@@ -10,6 +10,8 @@ RUN := OPENBLAS_NUM_THREADS=1 MPLBACKEND=Agg
 # none is to be kept; a process that has run its half takes from the end of the other, so that neighbours share results
 TEST := $(RUN) PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n 2 --dist worksteal
 OUT := out
+SCRIPTS := 'src/sonolube/browser/static/{link,scripts/**/*}.js'
+NPX = npx --yes --prefer-offline --package $(filter $(1)@%,$(shell cat requirements/node.txt)) --
 # surfalize (GPL) is run as a program of its own, by the tests and benchmarks that compare with it, where `make surfalize` has put it
 export SURFALIZE_PYTHON ?= $(abspath $(wildcard $(RIVAL)/bin/python))
 
@@ -56,11 +58,12 @@ lowest: $(LOWEST)/installed ## run a part of the tests with the lowest versions 
 
 surfalize: $(RIVAL)/installed ## install surfalize beside sonolube, for the tests that compare with it
 
-lint: $(VENV)/test ## mend what ruff can mend, then check style, types and architecture
+lint: $(VENV)/test ## mend what ruff and prettier can mend, then check style, types and architecture
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	if command -v npx >/dev/null; then $(call NPX,prettier) prettier --write --log-level warn $(SCRIPTS) && $(call NPX,typescript) tsc --project .; fi
 
 docs: $(VENV)/docs ## build the documentation into out/docs
 	$(RUN) $(BIN)/sphinx-build -W --keep-going -b html docs $(OUT)/docs

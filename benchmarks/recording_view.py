@@ -19,8 +19,8 @@ import xarray as xr
 from tests.browser.pages import at_rest, opened, started_browser
 from tests.browser.workbench import served
 
-from sonolube.browser.places import Places
 from sonolube.browser.recording_view import file_view, recording_view
+from sonolube.browser.requests import Places
 from sonolube.browser.worker import encoded
 from sonolube.measurement.recordings.reader import write_recording
 

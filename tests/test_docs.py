@@ -10,6 +10,7 @@ import shutil
 from pathlib import Path
 
 import pytest
+from sentences import first_prediction
 
 import sonolube
 from sonolube import models
@@ -156,6 +157,22 @@ def test_pages_load_nothing_from_elsewhere() -> None:
     assert not re.findall(
         r"(?:src|import|url)\s*[=(]\s*[\"']?https?://|\{image\} https?://|!\[[^\]]*\]\(https?://", settings
     )
+
+
+def test_the_first_example_of_the_first_page_says_what_the_commands_beside_it_say(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (new,) = re.findall(r"^    sonolube (new my-rig.toml .*)$", text_of(ROOT / "README.md"), flags=re.MULTILINE)
+    monkeypatch.chdir(tmp_path)
+    for words in (shlex.split(new), ["predict", "my-rig.toml"]):
+        with pytest.raises(SystemExit, match=r"^0$"):
+            main(words)
+    assert first_prediction().strip("*") in " ".join(capsys.readouterr().out.split())
+
+
+def test_no_page_types_what_a_prediction_says_of_friction() -> None:
+    typed = re.compile(r"friction (?:falls|rises) by \W*\d+ to \d+ %|friction goes from \W*\d+ % more", re.IGNORECASE)
+    assert [page.name for page in (*PAGES, ROOT / "README.md") if typed.search(page.read_text(encoding="utf-8"))] == []
 
 
 def test_the_quick_tests_are_there() -> None:

@@ -22,6 +22,7 @@ from typing import Any, ClassVar
 import numpy as np
 from docutils import nodes
 from docutils.parsers.rst import directives
+from sentences import first_prediction
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
@@ -325,6 +326,7 @@ TABLES: Mapping[str, Callable[[], str]] = {
         blind_headline,
         blind_plane,
         blind_plane_headline,
+        first_prediction,
     )
 }
 

@@ -16,7 +16,7 @@ import uvicorn
 
 from sonolube.browser.access import Access, Guard
 from sonolube.browser.jobs import Jobs
-from sonolube.browser.places import Places
+from sonolube.browser.requests import Places
 from sonolube.browser.routes import Workbench
 from sonolube.browser.server import _listening
 from sonolube.browser.uploads import Uploads

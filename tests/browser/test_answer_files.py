@@ -11,7 +11,7 @@ from tests.browser.test_answers import TRIBOMETER
 import sonolube as sl
 from sonolube import __version__
 from sonolube.browser.answer_files import answer_files
-from sonolube.browser.places import Places
+from sonolube.browser.requests import Places
 from sonolube.browser.worker import reply
 from sonolube.rig import read_rig
 from sonolube.tasks.answer import Answer

@@ -11,8 +11,7 @@ from tests.tiers import examples
 
 import sonolube as sl
 from sonolube.browser.answers import answered, offered_tasks
-from sonolube.browser.kinds import KINDS
-from sonolube.browser.places import Places
+from sonolube.browser.requests import KINDS, Places
 from sonolube.browser.rig_view import rig_view
 from sonolube.browser.take_away import changed_text
 from sonolube.browser.worker import reply

@@ -15,7 +15,7 @@ import sonolube as sl
 from sonolube.browser.answers import answered, offered_task
 from sonolube.browser.job import write_files
 from sonolube.browser.mode_view import SHAPES_FILE, mode_files, mode_parts
-from sonolube.browser.places import Places
+from sonolube.browser.requests import Places
 from sonolube.errors import InvalidInput, SonolubeError, UnknownName
 from sonolube.models.fem import PARTS
 

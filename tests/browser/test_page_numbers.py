@@ -21,7 +21,7 @@ from tests.browser.workbench import Served
 from tests.chromium import CHROMIUM
 
 import sonolube as sl
-from sonolube.browser.places import Places
+from sonolube.browser.requests import Places
 from sonolube.browser.rig_view import rig_view
 from sonolube.charts import chart_tables
 from sonolube.cli import main

@@ -16,8 +16,8 @@ from tests.tiers import examples
 import sonolube as sl
 from sonolube.browser.answers import answer_object
 from sonolube.browser.measured_use import measured_table, measured_use
-from sonolube.browser.places import Places
 from sonolube.browser.recording_view import file_view, recording_view
+from sonolube.browser.requests import Places
 from sonolube.browser.uploads import Uploads
 from sonolube.browser.worker import encoded
 from sonolube.errors import InvalidInput, SonolubeError

@@ -12,7 +12,7 @@ from hypothesis import HealthCheck, given, strategies as st
 from tests.browser.scans import GROOVE_DEPTH, GROOVE_WIDTH, SPACING, groove_heights, write_groove
 from tests.tiers import examples
 
-from sonolube.browser.places import Places
+from sonolube.browser.requests import Places
 from sonolube.browser.scan_view import scan_view, section_view
 from sonolube.browser.worker import encoded, reply
 from sonolube.errors import InvalidInput, SonolubeError

@@ -10,9 +10,9 @@ import h5py
 import pytest
 
 import sonolube as sl
+from sonolube.browser.answer_files import made_by, marked
 from sonolube.browser.job import write_files
-from sonolube.browser.made_by import made_by, marked
-from sonolube.browser.places import Places
+from sonolube.browser.requests import Places
 from sonolube.browser.take_away import _FORMS, taken
 from sonolube.design.horns.profile import horn_profile, profile_dxf
 from sonolube.design.horns.shapes import horn_body

@@ -12,8 +12,7 @@ import pytest
 from pytest import CaptureFixture, MonkeyPatch
 
 from sonolube.browser import worker
-from sonolube.browser.kinds import KINDS
-from sonolube.browser.places import Places
+from sonolube.browser.requests import KINDS, Places
 from sonolube.browser.worker import Pool, reply
 
 NOWHERE = Places(rigs={})

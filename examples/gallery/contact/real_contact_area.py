@@ -1,6 +1,6 @@
 """Real contact area over load
 
-Steel on aluminium: the area that carries the load is a thousandth of the nominal area and less, and grows
+Steel on aluminium: the area that carries the load is at most 1.5 thousandths of the nominal area, and grows
 almost in proportion to the load. The laws of the single asperity differ by how the plastic ones carry on.
 """
 

@@ -9,7 +9,8 @@ import sonolube as sl
 rig = sl.new(
     pin="brass", disc="304", load="5 N", speed="0.2 m/s", frequency="20 kHz", amplitude="3 um", finish="ground N6"
 ).rig
-figure = sl.plot(sl.predict(rig))
+answer = sl.predict(rig)
+figure = sl.plot(answer)
 
 if __name__ == "__main__":
     figure.savefig("prediction.png", dpi=150)

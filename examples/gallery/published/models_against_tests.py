@@ -1,7 +1,7 @@
 """Models against published tests
 
-Two models fitted to all other sets of tests, and their prediction for the set left out, over what was measured.
-On the diagonal a model would be right.
+Two models, fitted to all other sets of tests where they have a parameter, and their prediction for the set left out,
+over what was measured. On the diagonal a model would be right.
 """
 
 import sonolube as sl

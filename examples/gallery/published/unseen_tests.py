@@ -1,6 +1,6 @@
 """Prediction of tests not seen
 
-Every published rig predicted from all the others: bands of 50, 80 and 95 % and the measured ratio. A prediction
+Two published tables, each predicted from all other rigs: bands of 50, 80 and 95 % and the measured ratio. A prediction
 is worth something where the points fall inside as often as the bands say.
 """
 

@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any, Final
 
-from sonolube.browser.places import Places
+from sonolube.browser.requests import Places
 from sonolube.charts import chart_object, chart_tables
 from sonolube.errors import InvalidInput, SeveralFaults, UnknownName
 from sonolube.example_files import example_files

@@ -10,7 +10,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any, Final
 
-from sonolube.browser.places import OPENED, Places
+from sonolube.browser.requests import OPENED, Places
 from sonolube.storage.files import write_atomically
 
 _RIG: Final = {"rig": {"name": OPENED, "changes": {}}}

@@ -9,9 +9,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from sonolube.browser.answer_files import made_by, marked
 from sonolube.browser.answers import answer_object, called, given_arguments, offered_task
-from sonolube.browser.made_by import made_by, marked
-from sonolube.browser.places import Places
+from sonolube.browser.requests import Places
 from sonolube.browser.worker import encoded, limit_process
 from sonolube.errors import SonolubeError, fault_line
 from sonolube.storage.files import write_atomically

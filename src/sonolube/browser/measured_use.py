@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 from sonolube import __version__
-from sonolube.browser.places import Places
+from sonolube.browser.requests import Places
 from sonolube.browser.uploads import named_uploads, uploaded
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import RecordingMapping, read_mapping

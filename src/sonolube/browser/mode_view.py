@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from sonolube.browser.places import Places
+from sonolube.browser.requests import Places
 
 if TYPE_CHECKING:
     from sonolube.models.fem.results.mode_surfaces import SurfaceModes

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from sonolube.browser.places import Places
+from sonolube.browser.requests import Places
 from sonolube.browser.uploads import companion, named_uploads, uploaded
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.measurement.column_statements import FileColumn, mapping_of_statements, stated_file_columns

@@ -6,7 +6,7 @@ from contextlib import ExitStack
 from typing import Any, Final
 
 from sonolube.browser.answers import names_only, requested_file
-from sonolube.browser.places import Places
+from sonolube.browser.requests import Places
 from sonolube.design import map_kinds
 from sonolube.errors import InvalidInput
 from sonolube.example_files import example_files

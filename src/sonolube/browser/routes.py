@@ -15,7 +15,6 @@ from starlette.routing import Route
 
 from sonolube.browser.first_page import shipped_answer
 from sonolube.browser.jobs import KEPT_DAYS, Jobs
-from sonolube.browser.kinds import VIEWS
 from sonolube.browser.lab.routes import Laboratory
 from sonolube.browser.lab.runner_records import laboratory_folder
 from sonolube.browser.messages import (
@@ -25,7 +24,7 @@ from sonolube.browser.messages import (
     json_response as _json,
     refused as _refusal,
 )
-from sonolube.browser.places import Places
+from sonolube.browser.requests import VIEWS, Places
 from sonolube.browser.static_files import static_file
 from sonolube.browser.uploads import Uploads
 from sonolube.browser.worker import Pool

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Final, get_args
 
 from sonolube import __version__
-from sonolube.browser.places import Places
+from sonolube.browser.requests import Places
 from sonolube.browser.uploads import uploaded
 from sonolube.charts import Chart, chart_object
 from sonolube.errors import InvalidInput, SonolubeError, UnknownName

@@ -15,7 +15,7 @@ import uvicorn
 
 from sonolube.browser.access import Access, Guard
 from sonolube.browser.jobs import Jobs, jobs_folder
-from sonolube.browser.places import OPENED
+from sonolube.browser.requests import OPENED
 from sonolube.browser.routes import Workbench
 from sonolube.browser.uploads import Uploads
 from sonolube.browser.worker import Pool

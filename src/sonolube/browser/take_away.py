@@ -9,9 +9,9 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any, Final
 
+from sonolube.browser.answer_files import command, made_by, marked, named, rig_file, version_and_seed
 from sonolube.browser.answers import called, given_arguments, offered_task, rig_path
-from sonolube.browser.made_by import command, made_by, marked, named, rig_file, version_and_seed
-from sonolube.browser.places import Places
+from sonolube.browser.requests import Places
 from sonolube.charts import chart_tables
 from sonolube.errors import InvalidInput, entry_named
 from sonolube.report.page import Page, PageTable, rendered_files

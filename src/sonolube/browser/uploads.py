@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path, PurePath
 from typing import Any, Final
 
-from sonolube.browser.places import Places
+from sonolube.browser.requests import Places
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.tasks.files import private_files, with_names_only
 

@@ -19,7 +19,7 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import Any, Final
 
-from sonolube.browser.places import OPENED, Places
+from sonolube.browser.requests import OPENED, Places
 from sonolube.errors import SonolubeError, fault_line
 
 _REFUSED, _FAILED = 422, 500
@@ -71,7 +71,7 @@ def warm_up() -> None:
 def reply(kind: str, payload: Mapping[str, Any], places: Places) -> tuple[int, bytes]:
     """Status and JSON of the answer to a request."""
     from sonolube.browser.answers import refusal_object
-    from sonolube.browser.kinds import KINDS
+    from sonolube.browser.requests import KINDS
 
     try:
         return 200, encoded(KINDS[kind](payload, places))

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sonolube.design.progress import ProgressCallback
 from sonolube.design.sweep_dataset import ChunkStore, MemoryDatasetWriter, NetCDFDatasetWriter
 from sonolube.design.sweep_plan import OPERATING_CONDITIONS, SweepPlan
 from sonolube.errors import InvalidInput, SonolubeError
@@ -23,6 +22,9 @@ from sonolube.rig.operating_conditions import REFUSED
 
 if TYPE_CHECKING:
     import xarray as xr
+
+ProgressCallback = Callable[[int, int], None]
+"""Called with the number of finished items and their total."""
 
 CHUNK_POINTS = 100_000
 """Default number of points of a chunk, the unit in which results are computed and stored."""

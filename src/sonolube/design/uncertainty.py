@@ -10,8 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sonolube import __version__
 from sonolube.checks import Floats
-from sonolube.design.parameter_sweep import sweep
-from sonolube.design.progress import ProgressCallback
+from sonolube.design.parameter_sweep import ProgressCallback, sweep
 from sonolube.design.statistics import SUBSEQUENCES, saltelli_sample, sobol_sample
 from sonolube.design.sweep_plan import SweepPlan, list_plan
 from sonolube.errors import InvalidInput, SonolubeError, UnknownName

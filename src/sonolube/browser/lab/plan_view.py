@@ -7,7 +7,7 @@ from typing import Any, Final
 
 from sonolube.browser.answers import given_rig
 from sonolube.browser.lab.protocol_view import read_text, requested_protocol
-from sonolube.browser.places import Places
+from sonolube.browser.requests import Places
 from sonolube.errors import InvalidInput, SeveralFaults
 from sonolube.facts.protocol import Protocol, flattened, protocol_by_name_or_file, protocol_names
 

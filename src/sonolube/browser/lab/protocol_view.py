@@ -9,7 +9,7 @@ from pathlib import PurePath
 from typing import Any, Final
 
 from sonolube.browser.answers import answer_object, given_rig
-from sonolube.browser.places import Places
+from sonolube.browser.requests import Places
 from sonolube.errors import InvalidInput, SeveralFaults
 from sonolube.facts.protocol import (
     STEP_KINDS,

@@ -31,7 +31,7 @@ from sonolube.browser.lab.runner_records import (
     write_private,
 )
 from sonolube.browser.messages import JSON, content_of, json_response
-from sonolube.browser.places import Places
+from sonolube.browser.requests import Places
 from sonolube.browser.uploads import Uploads
 from sonolube.browser.worker import Pool
 from sonolube.errors import InvalidInput

@@ -15,7 +15,7 @@ from typing import Any, Final
 from sonolube.browser.lab.live_run import LiveRun
 from sonolube.browser.lab.runner_records import END, REQUEST, RUNNER, write_private
 from sonolube.browser.lab.stop_page import StopServer
-from sonolube.browser.places import Places
+from sonolube.browser.requests import Places
 from sonolube.errors import SonolubeError, fault_line
 from sonolube.laboratory import RunControl
 from sonolube.operating_system import process_start

@@ -5,7 +5,7 @@ from pathlib import Path, PurePath
 from typing import Any, Final
 
 from sonolube.browser.answers import answer_object
-from sonolube.browser.places import Places
+from sonolube.browser.requests import Places
 from sonolube.charts import chart_object, chart_tables
 from sonolube.errors import InvalidInput
 from sonolube.laboratory.catalogue import CatalogueEntry, level_rows, query_runs

@@ -20,7 +20,7 @@ from sonolube.design.optimisation.screening import (
     screen,
 )
 from sonolube.design.optimisation.space import Candidate, candidate_rig
-from sonolube.design.progress import ProgressCallback
+from sonolube.design.parameter_sweep import ProgressCallback
 from sonolube.errors import OutsideRange, UnknownName
 
 Solution = TypeVar("Solution")

@@ -17,7 +17,7 @@ from sonolube.design.optimisation.evaluation import (
 )
 from sonolube.design.optimisation.requirements import OBJECTIVES, Limits, Tolerance, deviations, worst_or_quantile
 from sonolube.design.optimisation.space import Candidate, DesignSpace, Range, candidate_rig
-from sonolube.design.progress import ProgressCallback
+from sonolube.design.parameter_sweep import ProgressCallback
 from sonolube.errors import SonolubeError
 from sonolube.rig import frequency_grid
 from sonolube.rig.driven_rig import DrivenRig

@@ -1,9 +1,12 @@
 /**
- * Requests of the page: one in flight, of those that wait the latest of each kind next; and whether the workbench answers.
+ * Requests of the page: one in flight, of those that wait the latest of each kind next; and whether the workbench
+ * answers.
  *
  * @typedef {{key: string, text: string}} Fault
  * @typedef {{text: string, faults: Fault[], kind: 'refused'|'busy'|'offline'|'link'}} Failure
- * @typedef {{content?: any, failure?: Failure}} Reply
+ * @typedef {{content: any, failure?: undefined}|{content?: undefined, failure: Failure}} Reply an answer or a failure
+ * @typedef {Reply & {refused?: Fault[]}} Answered `refused` names the entries that were left out
+ * @typedef {'ok'|'offline'|'link'} Link
  */
 import {useEffect, useState} from '../vendor/htm-preact-3.1.1.js';
 import {present, useListening} from './state.js';
@@ -12,20 +15,23 @@ const STATED = {'x-status': 'in-header'}; // a refusal is then no error of the b
 const RETRY = 2000; // ms between questions whether the workbench is back
 const LATE = 250; // ms
 
-/** @type {'ok'|'offline'|'link'} */
+/** @type {Link} */
 let connection = 'ok';
 let generation = 0; // counts how often the workbench came back
 let timer = 0;
+/** @type {Set<() => void>} */
 const listeners = new Set();
 const tell = () => listeners.forEach((listener) => listener());
 
 /** Statuses of a workbench, or of a proxy before it, that has no answer. */
+/** @type {Record<number, 'link'|'offline'>} */
 const GONE = {401: 'link', 502: 'offline', 504: 'offline'};
 const SENTENCES = {
   offline: 'The workbench does not answer. Start it again by: sonolube app. What you typed is kept.',
   link: 'The workbench was started again and asks for its new link.',
 };
 
+/** @param {Link} kind */
 function setConnection(kind) {
   if (kind === connection) return;
   if (kind === 'ok') generation += 1;
@@ -47,8 +53,10 @@ async function look() {
   if (connection !== 'ok') timer = setTimeout(look, RETRY);
 }
 
+/** @param {Failure['kind']} kind @param {string} text @returns {Reply} */
 const failed = (kind, text) => ({failure: {kind, text, faults: [{key: '', text}]}});
 
+/** @param {'link'|'offline'} kind */
 function gone(kind) {
   setConnection(kind);
   return failed(kind, SENTENCES[kind]);
@@ -57,7 +65,8 @@ function gone(kind) {
 /**
  * GET, POST or DELETE of an address of the workbench, whatever else is in flight.
  * @param {string} path such as "api/jobs"
- * @param {{method?: string, body?: any, raw?: Blob, signal?: AbortSignal}} [options] a body makes it a POST, of JSON or raw
+ * @param {{method?: string, body?: any, raw?: Blob, signal?: AbortSignal}} [options] a body makes it a POST, of JSON or
+ *   raw
  * @returns {Promise<Reply>}
  */
 export async function ask(path, {method, body, raw, signal} = {}) {
@@ -65,7 +74,9 @@ export async function ask(path, {method, body, raw, signal} = {}) {
   let response;
   try {
     response = await fetch(path, {
-      method: method ?? (raw || json ? 'POST' : 'GET'), signal, body: raw ?? json,
+      method: method ?? (raw || json ? 'POST' : 'GET'),
+      signal,
+      body: raw ?? json,
       headers: {...STATED, ...(json && {'content-type': 'application/json'})},
     });
   } catch (reason) {
@@ -82,20 +93,25 @@ export async function ask(path, {method, body, raw, signal} = {}) {
   return {failure: {kind, text: content.text ?? '', faults: content.faults ?? []}};
 }
 
-/** Answer of a task, such as "measure friction", to arguments by Python's names. @param {string} name @param {object} args @returns {Promise<Reply>} */
+/**
+ * Answer of a task, such as "measure friction", to arguments by Python's names.
+ * @param {string} name
+ * @param {object} args
+ * @returns {Promise<Reply>}
+ */
 export const callTask = (name, args) => ask(taskPath(name), {body: args});
 /** @param {string} name @returns {string} */
 export const taskPath = (name) => `api/tasks/${name.replaceAll(' ', '/')}`;
 
+/** @type {Map<string, {work: (signal: AbortSignal) => Promise<Answered>, done: (reply: Answered|null) => void}>} */
 const waiting = new Map();
 /** @type {AbortController|null} */
 let inFlight = null;
 
 async function run() {
   if (inFlight) return;
-  while (waiting.size) {
+  for (const [slot, {work, done}] of waiting) {
     inFlight = new AbortController();
-    const [slot, {work, done}] = waiting.entries().next().value;
     waiting.delete(slot);
     done(await work(inFlight.signal));
   }
@@ -107,19 +123,27 @@ export const cancelRequest = () => inFlight?.abort();
 
 /**
  * Do requests one after the other; a newer one of the same slot replaces one that waits, whose reply is then null.
- * @param {string} slot @param {(signal: AbortSignal) => Promise<Reply>} work @returns {Promise<Reply|null>}
+ * @param {string} slot
+ * @param {(signal: AbortSignal) => Promise<Answered>} work
+ * @returns {Promise<Answered|null>}
  */
-export const inTurn = (slot, work) => new Promise((done) => {
-  waiting.get(slot)?.done(null);
-  waiting.set(slot, {work, done});
-  run();
-});
+export const inTurn = (slot, work) =>
+  new Promise((done) => {
+    waiting.get(slot)?.done(null);
+    waiting.set(slot, {work, done});
+    run();
+  });
 
-/** @type {Map<string, {text: string, reply: Promise<Reply|null>}>} Latest request of each slot, whose reply hooks share. */
+/**
+ * Latest request of each slot, whose reply hooks share.
+ * @type {Map<string, {text: string, reply: Promise<Answered|null>}>}
+ */
 const latestOf = new Map();
 
+/** @param {string} slot @param {string} text @param {(signal: AbortSignal) => Promise<Answered>} work */
 function shared(slot, text, work) {
-  if (latestOf.get(slot)?.text === text) return latestOf.get(slot).reply;
+  const latest = latestOf.get(slot);
+  if (latest?.text === text) return latest.reply;
   const reply = inTurn(slot, work);
   latestOf.set(slot, {text, reply});
   reply.then((found) => {
@@ -130,26 +154,38 @@ function shared(slot, text, work) {
 
 /** @type {Map<string, string>} Last accepted text of each changed entry, by rig and key. */
 const accepted = new Map();
+/** @param {import('./state.js').RigState} rig @param {string} key */
 const place = (rig, key) => `${rig.text ?? rig.name} ${key}`;
 
-/** Longest of some keys that a sentence names; empty where it names none. */
-const named = (text, keys) => keys.filter((key) => text.includes(`${key}:`)).sort((one, other) => other.length - one.length)[0] ?? '';
+/**
+ * Longest of some keys that a sentence names; empty where it names none.
+ * @param {string} text
+ * @param {string[]} keys
+ */
+const named = (text, keys) =>
+  keys.filter((key) => text.includes(`${key}:`)).sort((one, other) => other.length - one.length)[0] ?? '';
 
 /**
  * Ask about a rig; refused entries are replaced by what was accepted last, so that the other fields stay live.
- * @returns {Promise<Reply & {refused?: Fault[]}>} `refused` names the entries that were left out
+ * @param {string} path
+ * @param {any} body
+ * @param {AbortSignal} signal
+ * @returns {Promise<Answered>}
  */
 async function askWithRig(path, body, signal) {
   const first = await ask(path, {body, signal});
+  /** @type {import('./state.js').RigState|undefined} */
   const rig = body?.rig;
   if (!rig) return first;
-  if (first.content) {
+  const {failure} = first;
+  if (!failure) {
     for (const [key, text] of Object.entries(rig.changes)) accepted.set(place(rig, key), text);
     return first;
   }
-  for (const fault of first.failure.faults) fault.key ||= named(fault.text, Object.keys(rig.changes));
-  const refused = first.failure.faults.filter((fault) => fault.key in rig.changes);
-  if (first.failure.kind !== 'refused' || !refused.length || refused.length < first.failure.faults.length) return first;
+  for (const fault of failure.faults) fault.key ||= named(fault.text, Object.keys(rig.changes));
+  const refused = failure.faults.filter((fault) => fault.key in rig.changes);
+  if (failure.kind !== 'refused' || !refused.length || refused.length < failure.faults.length) return first;
+  /** @param {string} key */
   const last = (key) => accepted.get(place(rig, key));
   const replaced = refused.map(({key}) => [key, last(key) === rig.changes[key] ? null : last(key)]);
   const changes = present({...rig.changes, ...Object.fromEntries(replaced)});
@@ -158,30 +194,50 @@ async function askWithRig(path, body, signal) {
 }
 
 /**
+ * @typedef {{content: any, failure: Failure|null, refused: Fault[], of: any}} Answer `of` is the body that is answered
+ */
+/**
  * Answer to the latest request of a slot, while an older answer stays; null for a path asks nothing, no body is a GET.
- * @returns {{content: any, failure: Failure|null, refused: Fault[], isWaiting: boolean, of: Object|null}}
- *   `of` is the body that `content` answers.
+ * @param {string} slot
+ * @param {string|null} path
+ * @param {any} [body]
+ * @returns {Answer & {isWaiting: boolean}}
  */
 export function useReply(slot, path, body) {
-  const [found, setFound] = useState({content: null, failure: null, refused: [], of: null, text: ''});
+  /** @type {Answer & {text: string}} */
+  const nothing = {content: null, failure: null, refused: [], of: null, text: ''};
+  const [found, setFound] = useState(nothing);
   const {generation: turn} = useConnection();
   const text = path === null ? '' : JSON.stringify([path, body, turn]);
   useEffect(() => {
     if (path === null) return;
-    shared(slot, text, (signal) => askWithRig(path, body, signal)).then((reply) => reply && setFound((old) => (reply.content
-      ? {content: reply.content, failure: null, refused: reply.refused ?? [], of: body, text}
-      : {...old, failure: reply.failure, refused: [], text})));
+    shared(slot, text, (signal) => askWithRig(path, body, signal)).then(
+      (reply) =>
+        reply &&
+        setFound((old) =>
+          reply.failure
+            ? {...old, failure: reply.failure, refused: [], text}
+            : {content: reply.content, failure: null, refused: reply.refused ?? [], of: body, text},
+        ),
+    );
   }, [text]);
   return {...found, isWaiting: path !== null && found.text !== text};
 }
 
-/** Whether the workbench answers, and how often it came back. @returns {{connection: 'ok'|'offline'|'link', generation: number}} */
+/**
+ * Whether the workbench answers, and how often it came back.
+ * @returns {{connection: Link, generation: number}}
+ */
 export function useConnection() {
   useListening(listeners);
   return {connection, generation};
 }
 
-/** Let this page in by a new link, as it was printed, without leaving it; false where it is of another workbench. @param {string} link @returns {Promise<boolean>} */
+/**
+ * Let this page in by a new link, as it was printed, without leaving it; false where it is of another workbench.
+ * @param {string} link
+ * @returns {Promise<boolean>}
+ */
 export async function enter(link) {
   const token = /[?&]token=([\w-]+)/.exec(link)?.[1] ?? link.trim();
   await fetch(`./?token=${encodeURIComponent(token)}`, {headers: STATED}).catch(() => null);
@@ -189,12 +245,16 @@ export async function enter(link) {
   return connection === 'ok';
 }
 
-/** Whether something has been so for a while, such as waiting for an answer, so that what is short does not flicker. @param {boolean} isSo @returns {boolean} */
+/**
+ * Whether something has been so for a while, such as waiting for an answer, so that what is short does not flicker.
+ * @param {boolean} isSo
+ * @returns {boolean}
+ */
 export function useLate(isSo) {
   const [isLate, setLate] = useState(false);
   useEffect(() => {
     setLate(false);
-    const waiting = isSo && setTimeout(() => setLate(true), LATE);
+    const waiting = isSo ? setTimeout(() => setLate(true), LATE) : 0;
     return () => clearTimeout(waiting);
   }, [isSo]);
   return isSo && isLate;

@@ -8,7 +8,11 @@ import {TakeAway} from './take-away.js';
 /** Pages with styles of their own, in `pages/` beside the scripts. */
 const STYLED = new Set(['data', 'modes', 'design', 'lab', 'jobs', 'dissertation']);
 
-/** Module of a page, or another one that has its styles, read with them. */
+/**
+ * Module of a page, or another one that has its styles, read with them.
+ * @param {string} page
+ * @param {string} path
+ */
 function read(page, path = `./pages/${page === 'new' ? 'new-rig' : page}.js`) {
   const module = import(path);
   if (!STYLED.delete(page)) return module;
@@ -22,6 +26,7 @@ const THEMES = ['system', 'light', 'dark'];
 const THEME_KEY = 'sonolube-theme';
 const storedTheme = () => stored('localStorage', THEME_KEY) ?? THEMES[0];
 
+/** @param {string} theme */
 function setTheme(theme) {
   document.documentElement.dataset.theme = theme;
   stored('localStorage', THEME_KEY, theme);
@@ -31,9 +36,15 @@ function setTheme(theme) {
 const drawAgain = () => dispatchEvent(new Event('themechange')); // what is drawn on a canvas
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', drawAgain);
 
-const ThemeSwitch = () => html`<label class="theme"><span class="hidden">Theme</span>
-  <${Select} choices=${THEMES.map((each) => [each, capital(each)])} value=${document.documentElement.dataset.theme}
-    onChange=${(event) => setTheme(event.target.value)} data-test="theme" /></label>`;
+const ThemeSwitch = () => html`<label class="theme">
+  <span class="hidden">Theme</span>
+  <${Select}
+    choices=${THEMES.map((each) => [each, capital(each)])}
+    value=${document.documentElement.dataset.theme}
+    onChange=${(event) => setTheme(event.target.value)}
+    data-test="theme"
+  />
+</label>`;
 
 function Head() {
   const {state, canUndo, canRedo} = useApp();
@@ -44,8 +55,16 @@ function Head() {
     <a class="skip" href="#answer" onClick=${skip}>Skip to the answer</a>
     <a class="name" href=${addressOf('predict')} data-test="home">sonolube</a>
     <nav class="pages" aria-label="Pages" ref=${links}>
-      ${Object.entries(PAGES).map(([page, title]) => html`<a key=${page} href=${addressAsLeft(page)} data-test=${`page:${page}`}
-        aria-current=${state.page === page ? 'page' : undefined}>${title}</a>`)}
+      ${Object.entries(PAGES).map(
+        ([page, title]) => html`<a
+          key=${page}
+          href=${addressAsLeft(page)}
+          data-test=${`page:${page}`}
+          aria-current=${state.page === page ? 'page' : undefined}
+        >
+          ${title}
+        </a>`,
+      )}
     </nav>
     <div class="tools">
       <${Step} name="Undo" keys="Ctrl+Z" step=${undo} can=${canUndo} />
@@ -56,17 +75,37 @@ function Head() {
   </header>`;
 }
 
-const Step = ({name, keys, step, can, kind = ''}) => html`<${Button} kind="icon" onClick=${step} disabled=${!can} aria-label=${name}
-  title=${`${name} (${keys})`} data-test=${name.toLowerCase()}><svg viewBox="0 0 20 20" width="18" height="18" aria-hidden="true" class=${kind}>
-  <path d="M7 4 3 8l4 4M3.5 8H12a4.5 4.5 0 0 1 0 9H8" fill="none" stroke="currentColor" stroke-width="1.8" stroke-linecap="round"
-    stroke-linejoin="round" /></svg><//>`;
+/** @param {{name: string, keys: string, step: () => void, can: boolean, kind?: string}} props */
+const Step = ({name, keys, step, can, kind = ''}) => html`<${Button}
+  kind="icon"
+  onClick=${step}
+  disabled=${!can}
+  aria-label=${name}
+  title=${`${name} (${keys})`}
+  data-test=${name.toLowerCase()}
+>
+  <svg viewBox="0 0 20 20" width="18" height="18" aria-hidden="true" class=${kind}>
+    <path
+      d="M7 4 3 8l4 4M3.5 8H12a4.5 4.5 0 0 1 0 9H8"
+      fill="none"
+      stroke="currentColor"
+      stroke-width="1.8"
+      stroke-linecap="round"
+      stroke-linejoin="round"
+    />
+  </svg>
+<//>`;
 
+/** @param {Event} event */
 function skip(event) {
   event.preventDefault();
   document.getElementById('answer')?.focus();
 }
 
-/** Keep the browser from leaving the page for a file that is dropped where no page takes it. */
+/**
+ * Keep the browser from leaving the page for a file that is dropped where no page takes it.
+ * @param {DragEvent} event
+ */
 function stay(event) {
   if (event.dataTransfer?.types.includes('Files')) event.preventDefault();
 }
@@ -78,22 +117,39 @@ function Connection() {
   const [isWrong, setWrong] = useState(false);
   if (connection === 'ok') return null;
   if (connection === 'offline') {
-    return html`<section class="notice is-warning connection" aria-label="Connection" data-test="offline"><p role="alert">
-      <strong>No connection.</strong> The workbench does not answer; this page asks again every two seconds. Where it was
-      stopped, start it by <code>sonolube app</code>. What you typed and the last answer stay.</p></section>`;
+    return html`<section class="notice is-warning connection" aria-label="Connection" data-test="offline">
+      <p role="alert">
+        <strong>No connection.</strong> The workbench does not answer; this page asks again every two seconds. Where it
+        was stopped, start it by <code>sonolube app</code>. What you typed and the last answer stay.
+      </p>
+    </section>`;
   }
+  /** @param {Event} event */
   const submit = async (event) => {
     event.preventDefault();
     setWrong(!(await enter(link)));
   };
   return html`<form class="notice is-warning connection" onSubmit=${submit} aria-label="New link" data-test="new-link">
-    <p role="alert"><strong>The workbench was started again.</strong> Paste the link that it printed; this page then goes
-      on where it was.</p>
-    <div class="row"><label class="grow"><span class="hidden">New link</span>
-      <input type="text" value=${link} onInput=${(event) => setLink(event.target.value)} autocomplete="off"
-        aria-invalid=${isWrong} aria-describedby=${isWrong ? 'link-refusal' : undefined} placeholder="http://…/?token=…"
-        data-test="link" /></label>
-      <button type="submit" class="button is-main">Go on</button></div>
+    <p role="alert">
+      <strong>The workbench was started again.</strong> Paste the link that it printed; this page then goes on where it
+      was.
+    </p>
+    <div class="row">
+      <label class="grow">
+        <span class="hidden">New link</span>
+        <input
+          type="text"
+          value=${link}
+          onInput=${(event) => setLink(event.target.value)}
+          autocomplete="off"
+          aria-invalid=${isWrong}
+          aria-describedby=${isWrong ? 'link-refusal' : undefined}
+          placeholder="http://…/?token=…"
+          data-test="link"
+        />
+      </label>
+      <button type="submit" class="button is-main">Go on</button>
+    </div>
     <${Refusal} id="link-refusal" text=${isWrong && 'This is not the link of the workbench that runs now.'} />
   </form>`;
 }
@@ -101,7 +157,7 @@ function Connection() {
 /** Page of the state; its module is read when it is first shown. */
 function Page() {
   const {state} = useApp();
-  const [pages, setPages] = useState({});
+  const [pages, setPages] = useState(/** @type {Record<string, any>} */ ({}));
   const [fault, clear] = useErrorBoundary((reason) => console.error(reason));
   const isFirst = useRef(true);
   const Shown = pages[state.page];
@@ -111,21 +167,32 @@ function Page() {
     isFirst.current = false;
     if (Shown) return;
     const {page} = state;
-    read(page).then((module) => module.default, () => Unread).then((shown) => setPages((old) => ({...old, [page]: shown})));
+    read(page)
+      .then(
+        (module) => module.default,
+        () => Unread,
+      )
+      .then((shown) => setPages((old) => ({...old, [page]: shown})));
   }, [state.page]);
   useEffect(() => {
     document.title = `${PAGES[state.page]} · ${state.rig.name} · sonolube`;
   }, [state.page, state.rig.name]);
   if (fault) return html`<${Broken} again=${clear} />`;
-  return Shown ? html`<${Shown} />` : html`<${Sheet} title=${PAGES[state.page]}><${Loading}>Reading the page…<//><//>`;
+  if (Shown) return html`<${Shown} />`;
+  return html`<${Sheet} title=${PAGES[state.page]}><${Loading}>Reading the page…<//><//>`;
 }
 
 const Unread = () => html`<${Sheet} title="No page">
-  <${Warning}>This page could not be read from the workbench. <a href="">Read it again</a><//><//>`;
+  <${Warning}>This page could not be read from the workbench. <a href="">Read it again</a><//>
+<//>`;
 
+/** @param {{again: () => void}} props */
 const Broken = ({again}) => html`<${Sheet} title="No answer">
-  <${Warning}><p><strong>This page made a mistake.</strong> What you typed is in the address of this page and not lost.</p>
-    <${Button} onClick=${again}>Draw it again<//><//><//>`;
+  <${Warning}>
+    <p><strong>This page made a mistake.</strong> What you typed is in the address of this page and not lost.</p>
+    <${Button} onClick=${again}>Draw it again<//>
+  <//>
+<//>`;
 
 const BETWEEN = 5000; // ms between looks whether a run is at work
 
@@ -133,7 +200,13 @@ const BETWEEN = 5000; // ms between looks whether a run is at work
 function AtWork() {
   const [Stop, setStop] = useState(null);
   const look = async () => {
-    if (!Stop && (await ask('api/start')).content?.is_running) setStop(await read('lab', './lab/stop.js').then((module) => () => module.default, () => null));
+    if (!Stop && (await ask('api/start')).content?.is_running)
+      setStop(
+        await read('lab', './lab/stop.js').then(
+          (module) => () => module.default,
+          () => null,
+        ),
+      );
   };
   useEvents(['runstart'], look);
   useEffect(() => {
@@ -144,23 +217,26 @@ function AtWork() {
   return Stop && html`<${Stop} />`;
 }
 
-/** Undo and redo by keys, where no text field has its own. */
+/**
+ * Undo and redo by keys, where no text field has its own.
+ * @param {KeyboardEvent & {target: Element}} event
+ */
 function onKey(event) {
   if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
   if (event.target.matches?.('input[type=text], textarea')) return;
   const key = event.key.toLowerCase();
-  const step = {y: redo, z: event.shiftKey ? redo : undo}[key];
-  if (!step) return;
+  const step = key === 'y' || (key === 'z' && event.shiftKey) ? redo : undo;
+  if (key !== 'y' && key !== 'z') return;
   event.preventDefault();
   step();
 }
 
 async function start() {
   setTheme(storedTheme());
-  const page = /^#\/(\w+)/.exec(location.hash)?.[1];
+  const page = /^#\/(\w+)/.exec(location.hash)?.[1] ?? '';
   read(Object.hasOwn(PAGES, page) ? page : 'predict').catch(() => null); // while the start is asked for
   let reply = await ask('api/start');
-  const root = document.getElementById('app');
+  const root = /** @type {HTMLElement} */ (document.getElementById('app'));
   if (!reply.content) {
     root.replaceChildren();
     render(html`<${Connection} />`, root);

@@ -2,15 +2,26 @@
  * State of the workbench: which page, which rig with which changes, and what the page shows. It lies in the fragment of
  * the address, so that a link, a reload or a restart gives the same screen; undo and redo go over the whole of it.
  *
- * @typedef {{name: string, text?: string, changes: Object<string, string>}} RigState
- * @typedef {{page: string, rig: RigState, view: Object<string, string>}} State
+ * @typedef {Record<string, string>} Texts
+ * @typedef {Record<string, string|null>} Edits texts to enter, null for those to remove
+ * @typedef {{name: string, text?: string, changes: Texts}} RigState
+ * @typedef {{page: string, rig: RigState, view: Texts}} State
+ * @typedef {{replace?: boolean}} ChangeOptions
  */
 import {useLayoutEffect, useState} from '../vendor/htm-preact-3.1.1.js';
 
 /** Pages by their names in an address, with their titles. */
+/** @type {Texts} */
 export const PAGES = {
-  predict: 'Predict', explore: 'Explore', data: 'Data', modes: 'Modes', design: 'Design', lab: 'Lab', jobs: 'Jobs',
-  dissertation: 'Dissertation', new: 'New rig',
+  predict: 'Predict',
+  explore: 'Explore',
+  data: 'Data',
+  modes: 'Modes',
+  design: 'Design',
+  lab: 'Lab',
+  jobs: 'Jobs',
+  dissertation: 'Dissertation',
+  new: 'New rig',
 };
 const STEPS = 100; // of undo
 const LONGEST_TEXT = 8192; // characters of a compressed rig file that a link holds
@@ -30,7 +41,13 @@ const packed = new Map();
 
 const tell = () => listeners.forEach((listener) => listener());
 
-/** Value that a store of the browser holds, or is given; a full or forbidden store forgets, no more. @param {string} store @param {string} name @param {string} [value] @returns {string|null} */
+/**
+ * Value that a store of the browser holds, or is given; a full or forbidden store forgets, no more.
+ * @param {'sessionStorage'|'localStorage'} store
+ * @param {string} name
+ * @param {string} [value]
+ * @returns {string|undefined}
+ */
 export function stored(store, name, value) {
   try {
     if (value !== undefined) globalThis[store].setItem(name, value);
@@ -47,7 +64,8 @@ const views = JSON.parse(stored('sessionStorage', 'views') ?? '{}');
 function remember() {
   const {page, view} = state;
   views[page] = view;
-  if (WITH_RIG.includes(page)) WITH_RIG.forEach((each) => SHARED.forEach((name) => (views[each] = present({...views[each], [name]: view[name]}))));
+  if (WITH_RIG.includes(page))
+    WITH_RIG.forEach((each) => SHARED.forEach((name) => (views[each] = present({...views[each], [name]: view[name]}))));
   stored('sessionStorage', 'views', JSON.stringify(views));
 }
 
@@ -61,10 +79,19 @@ export function useListening(to) {
   }, []);
 }
 
-/** Text as bytes through a stream of the browser, as base64url or back. */
-const through = async (stream, bytes) => new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
+/**
+ * Text as bytes through a stream of the browser, as base64url or back.
+ * @param {CompressionStream|DecompressionStream} stream
+ * @param {Uint8Array<ArrayBuffer>} bytes
+ */
+const through = async (stream, bytes) =>
+  new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
 
-/** Compress the text of a rig so that a link can hold it, and give its code; a long one is kept by this tab only. @param {string} text @returns {Promise<string>} */
+/**
+ * Compress the text of a rig so that a link can hold it, and give its code; a long one is kept by this tab only.
+ * @param {string} text
+ * @returns {Promise<string>}
+ */
 export async function pack(text) {
   const bytes = await through(new CompressionStream('deflate-raw'), new TextEncoder().encode(text));
   const binary = Array.from(bytes, (byte) => String.fromCharCode(byte)).join('');
@@ -80,18 +107,26 @@ export async function pack(text) {
 /** Whether the text of a rig is too long for a link. @param {string} [text] @returns {boolean} */
 export const isOfTab = (text) => Boolean(packed.get(text)?.startsWith(KEPT_PREFIX));
 
-/** Text of a code of `pack`; undefined where this tab no longer keeps it. @param {string} code @returns {Promise<string|undefined>} */
+/**
+ * Text of a code of `pack`; undefined where this tab no longer keeps it.
+ * @param {string} code
+ * @returns {Promise<string|undefined>}
+ */
 export async function unpack(code) {
-  const isKept = code.startsWith(KEPT_PREFIX);
-  const bytes = isKept ? null : Uint8Array.from(atob(code.replaceAll('-', '+').replaceAll('_', '/')), (letter) => letter.charCodeAt(0));
-  const text = isKept ? stored('sessionStorage', code) : new TextDecoder().decode(await through(new DecompressionStream('deflate-raw'), bytes));
+  const read = async () => {
+    const binary = atob(code.replaceAll('-', '+').replaceAll('_', '/'));
+    const bytes = Uint8Array.from(binary, (letter) => letter.charCodeAt(0));
+    return new TextDecoder().decode(await through(new DecompressionStream('deflate-raw'), bytes));
+  };
+  const text = code.startsWith(KEPT_PREFIX) ? stored('sessionStorage', code) : await read();
   if (text !== undefined) packed.set(text, code);
   return text;
 }
 
+/** @param {string} text */
 const quoted = (text) => encodeURIComponent(text).replaceAll('%20', '+').replaceAll('%3A', ':').replaceAll('%2F', '/');
 
-/** Fragment of a state, without its hash. @param {object} of @returns {string} */
+/** Fragment of a state, without its hash. @param {State} of @returns {string} */
 export function encode(of) {
   const parts = [
     ...(of.rig.name ? [['rig', of.rig.name]] : []),
@@ -103,7 +138,7 @@ export function encode(of) {
   return `/${of.page}${query && `?${query}`}`;
 }
 
-/** State of a fragment; what it lacks is empty. @param {string} of @returns {Promise<object>} */
+/** State of a fragment; what it lacks is empty. @param {string} of @returns {Promise<State>} */
 export async function decode(of) {
   const [path, query = ''] = of.replace(/^#/, '').split(/\?(.*)/s);
   const page = path.replace(/^\//, '');
@@ -120,12 +155,20 @@ export async function decode(of) {
   return found;
 }
 
-/** Entries of a record that are not null. @param {object} entries @returns {object} */
-export const present = (entries) => Object.fromEntries(Object.entries(entries).filter(([, value]) => value != null));
+/**
+ * Entries of a record that are not null.
+ * @template T
+ * @param {Record<string, T>} entries
+ * @returns {Record<string, NonNullable<T>>}
+ */
+export const present = (entries) =>
+  /** @type {any} */ (Object.fromEntries(Object.entries(entries).filter(([, value]) => value != null)));
 
 /**
- * Change parts of the state; entries of `view` and `rig.changes` that are null are removed. With `replace` (a value that moves) there is no entry of history until `settle` or the next change.
- * @param {Partial<State>} partial
+ * Change parts of the state; entries of `view` and `rig.changes` that are null are removed. With `replace` (a value
+ * that moves) there is no entry of history until `settle` or the next change.
+ * @param {{page?: string, rig?: {name: string, text?: string, changes: Edits}, view?: Edits}} partial
+ * @param {ChangeOptions} [options]
  */
 export function change({page = state.page, rig = state.rig, view}, {replace = false} = {}) {
   const shown = page === state.page ? state.view : {};
@@ -147,7 +190,10 @@ function commit() {
   tell();
 }
 
-/** Make a fragment that of now, the one before it a step to undo; false where it is the same. */
+/**
+ * Make a fragment that of now, the one before it a step to undo; false where it is the same.
+ * @param {string} to
+ */
 function enter(to) {
   const from = before ?? fragment;
   before = null;
@@ -160,13 +206,20 @@ function enter(to) {
   return true;
 }
 
-/** Set an entry of the rig, or take its change back with null; options as of `change`. @param {string} key @param {string|null} text @param {object} [options] */
-export const setEntry = (key, text, options) => change({rig: {...state.rig, changes: {...state.rig.changes, [key]: text}}}, options);
+/**
+ * Set an entry of the rig, or take its change back with null; options as of `change`.
+ * @param {string} key
+ * @param {string|null} text
+ * @param {ChangeOptions} [options]
+ */
+export const setEntry = (key, text, options) =>
+  change({rig: {...state.rig, changes: {...state.rig.changes, [key]: text}}}, options);
 
+/** @param {string[]} from @param {string[]} onto */
 async function step(from, onto) {
   settle();
-  if (!from.length) return;
   const to = from.pop();
+  if (to === undefined) return;
   onto.push(fragment);
   state = await decode(to);
   fragment = to;
@@ -179,12 +232,16 @@ async function step(from, onto) {
 export const undo = () => step(past, future);
 export const redo = () => step(future, past);
 
-/** Address of a page with the rig of now, for a link. @param {string} page @param {object} [view] @returns {string} */
+/** Address of a page with the rig of now, for a link. @param {string} page @param {Texts} [view] @returns {string} */
 export const addressOf = (page, view = {}) => `#${encode({page, rig: state.rig, view})}`;
 /** Address of a page as it was left, for a link. @param {string} page @returns {string} */
 export const addressAsLeft = (page) => addressOf(page, page === state.page ? state.view : views[page]);
 
-/** Read the state from the address, and follow it; an address without a rig gets the one that was opened. @param {string} opened @returns {Promise<void>} */
+/**
+ * Read the state from the address, and follow it; an address without a rig gets the one that was opened.
+ * @param {string} opened
+ * @returns {Promise<void>}
+ */
 export async function followAddress(opened) {
   const read = async () => {
     const found = await decode(location.hash);

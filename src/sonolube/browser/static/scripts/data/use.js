@@ -7,16 +7,25 @@ import {useRig} from '../rig-panel.js';
 import {addressOf, change, useApp} from '../state.js';
 import {save} from '../take-away.js';
 
-/** @param {{source: Object|null}} props `source` is what a request of "measured-use" has beside the runs: results and conditions, or a table; null for none */
+/**
+ * @param {{source: object|null}} props `source` is what a request of "measured-use" has beside the runs: results and
+ *   conditions, or a table; null for none
+ */
 export function Use({source}) {
-  const {state: {rig, view}} = useApp();
+  const {
+    state: {rig, view},
+  } = useApp();
   const {view: rigView} = useRig();
   const [note, setNote] = useState('');
   const {content, failure} = useReply('use', source && 'api/measured-use', source ?? NOTHING);
   const known = new Set(rigView?.fields.map(({key}) => key));
-  const entries = (content?.entries ?? []).filter(({key}) => known.has(key.replace('uncertainty.', '')));
+  /** @type {{key: string, text: string}[]} */
+  const measured = content?.entries ?? [];
+  const entries = measured.filter(({key}) => known.has(key.replace('uncertainty.', '')));
   const set = () => {
-    change({rig: {...rig, changes: {...rig.changes, ...Object.fromEntries(entries.map(({key, text}) => [key, text]))}}});
+    change({
+      rig: {...rig, changes: {...rig.changes, ...Object.fromEntries(entries.map(({key, text}) => [key, text]))}},
+    });
     setNote(`In the rig: ${entries.map(({key, text}) => `${key} ${text}`).join(', ')}.`);
   };
   const runs = view.runs && uploadOf(view.runs);
@@ -24,7 +33,12 @@ export function Use({source}) {
     const made = await ask('api/measured-use', {body: {...source, ...(runs && {runs})}});
     const kept = made.content?.csv ? await ask('api/uploads', {raw: new Blob([made.content.csv])}) : made;
     if (kept.content?.upload) change({view: {runs: `${kept.content.upload} own-runs.csv`}});
-    setNote(kept.failure?.text ?? (made.content.csv ? `${made.content.added} added: ${made.content.runs} own runs.` : 'There is no level of friction to add.'));
+    setNote(
+      kept.failure?.text ??
+        (made.content.csv
+          ? `${made.content.added} added: ${made.content.runs} own runs.`
+          : 'There is no level of friction to add.'),
+    );
   };
   const take = async () => {
     const made = await ask('api/measured-use', {body: {runs}});
@@ -33,9 +47,19 @@ export function Use({source}) {
   return html`<${Card} id="use-title" title="Use the result" data-test="use">
     ${failure?.faults.map(({text}) => html`<${Refusal} key=${text} text=${text} role="alert" />`)}
     ${entries.length > 0 && html`<p class="hint">${entries.map(({key, text}) => `${key} = ${text}`).join(', ')}</p>`}
-    <p class="row"><${Button} disabled=${!entries.length} onClick=${set} data-test="use-in-rig">Use in my rig<//>
+    <p class="row">
+      <${Button} disabled=${!entries.length} onClick=${set} data-test="use-in-rig">Use in my rig<//>
       <${Button} disabled=${!source} onClick=${add} data-test="add-to-runs">Add to my runs<//>
-      ${runs && html`<${Button} onClick=${take} data-test="take-runs">Save own runs (CSV)<//>
-        <a class="button" href=${addressOf('predict', {runs: view.runs})} data-test="predict-with-runs">Predict with own runs</a>`}</p>
-    <p class="hint" role="status" data-test="use-note">${note}</p><//>`;
+      ${
+        runs &&
+        html`
+          <${Button} onClick=${take} data-test="take-runs">Save own runs (CSV)<//>
+          <a class="button" href=${addressOf('predict', {runs: view.runs})} data-test="predict-with-runs">
+            Predict with own runs
+          </a>
+        `
+      }
+    </p>
+    <p class="hint" role="status" data-test="use-note">${note}</p>
+  <//>`;
 }

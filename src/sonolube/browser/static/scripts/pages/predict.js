@@ -9,6 +9,15 @@ import {useRig, Workspace} from '../rig-panel.js';
 import {addressOf, change, decode, encode, present, setEntry, useApp} from '../state.js';
 import {offer} from '../take-away.js';
 
+/**
+ * @import {Block, Content} from '../answer.js'
+ * @import {ChartData} from '../chart-scale.js'
+ * @import {RigView} from '../rig-panel.js'
+ * @import {State, Texts} from '../state.js'
+ * @typedef {{label: string, answer: Content}} KeptAnswer
+ * @typedef {{kind: 'table', heads: string[], rows: string[][]}} TableBlock
+ */
+
 const MOVING_DRAWS = 1000;
 const MAX_KEPT = 3;
 const INTERVAL = '80 %';
@@ -16,7 +25,7 @@ const SPEED = 'sliding.sliding_speed';
 const AMPLITUDE = 'vibration.vibration_amplitude';
 const VOLTAGE = 'drive.voltage_peak_to_peak';
 const MEASURES_HEAD = 'what would narrow it';
-/** Fields that a line of advice is about, by a word in it. */
+/** Fields that a line of advice is about, by a word in it. @type {[RegExp, string[]][]} */
 const ADVISED = [
   [/decay length|stiffness/i, ['contact.decay_length', 'contact.normal_stiffness', 'contact.pair.effective_modulus']],
   [/dry friction/i, ['friction.friction_coefficient']],
@@ -25,135 +34,246 @@ const ADVISED = [
   [/run at this point/i, ['runs']],
 ];
 
-/** Arguments of the task for a state. */
+/**
+ * Arguments of the task for a state.
+ * @param {State} state
+ * @param {boolean} isMoving
+ */
 function argumentsOf(state, isMoving) {
   const {pin, disc, lubricant, runs} = state.view;
   return present({
-    rig: state.rig, runs: runs && uploadOf(runs), pin, disc, lubricant: lubricant ? true : null, draws: isMoving ? MOVING_DRAWS : null,
+    rig: state.rig,
+    runs: runs && uploadOf(runs),
+    pin,
+    disc,
+    lubricant: lubricant ? true : null,
+    draws: isMoving ? MOVING_DRAWS : null,
   });
 }
 
-const isTable = (block) => block.kind === 'table';
+/** Tables of an answer. @param {Content} answer @returns {TableBlock[]} */
+const tablesOf = ({blocks}) =>
+  blocks.flatMap(({kind, heads = [], rows = []}) => (kind === 'table' ? [{kind, heads, rows}] : []));
 
-/** Numbers of an answer by their labels, each as its median and interval: quantities, then the operating point. */
+/**
+ * Numbers of an answer by their labels, each as its median and interval: quantities, then the operating point.
+ * @param {Content} answer
+ * @returns {{quantities: Map<string, string[]>, point: Map<string, string[]>}}
+ */
 function numbersOf(answer) {
-  const {heads, rows} = answer.blocks.find(isTable);
+  const [{heads, rows}] = tablesOf(answer);
   const at = heads.indexOf(INTERVAL);
-  const point = (answer.answer.operating_point ?? []).map(({label, text}) => [label, text.split(/ (?=within )/)]);
-  return {quantities: new Map(rows.map((row) => [row[0], [row[1], row[at]]])), point: new Map(point)};
+  /** @type {{label: string, text: string}[]} */
+  const point = answer.answer.operating_point ?? [];
+  return {
+    quantities: new Map(rows.map((row) => [row[0], [row[1], row[at]]])),
+    point: new Map(point.map(({label, text}) => [label, text.split(/ (?=within )/)])),
+  };
 }
 
-/** The numbers on screen. */
+/**
+ * The numbers on screen.
+ * @param {{answer: Content}} props
+ */
 function Numbers({answer}) {
   const {quantities, point} = numbersOf(answer);
-  return html`<dl class="numbers" data-test="numbers">${[...quantities, ...point].map(([label, [median, interval]]) => html`
-    <div key=${label} class="number"><dt>${label}</dt><dd class="median">${median}</dd>
-      ${interval && html`<dd class="interval">${interval}</dd>`}</div>`)}
-  </dl>
-  <p class="hint numbers-note">Median, and below it the interval of ${INTERVAL}.</p>`;
+  return html`
+    <dl class="numbers" data-test="numbers">
+      ${[...quantities, ...point].map(
+        ([label, [median, interval]]) => html`<div key=${label} class="number">
+          <dt>${label}</dt>
+          <dd class="median">${median}</dd>
+          ${interval && html`<dd class="interval">${interval}</dd>`}
+        </div>`,
+      )}
+    </dl>
+    <p class="hint numbers-note">Median, and below it the interval of ${INTERVAL}.</p>
+  `;
 }
 
-/** What would narrow the interval, most first; a click opens what it is about. */
+/**
+ * What would narrow the interval, most first; a click opens what it is about.
+ * @param {{answer: Content, beside: Texts}} props
+ */
 function Sharpen({answer, beside}) {
-  const tables = answer.blocks.filter(isTable);
-  const {heads: [what, left], rows} = tables.find(({heads}) => heads[0] === MEASURES_HEAD) ?? {heads: [], rows: []};
+  const tables = tablesOf(answer);
+  /** @type {string[]} */
+  const probes = answer.answer.stiffness_probes ?? [];
+  const {
+    heads: [what, left],
+    rows,
+  } = tables.find(({heads}) => heads[0] === MEASURES_HEAD) ?? {heads: [], rows: []};
   if (!rows.length) return null;
   return html`<${Card} id="sharpen-title" title="What would sharpen this" data-test="sharpen">
-    <ul class="measures">${rows.map(([label, share]) => {
-    const keys = ADVISED.find(([word]) => word.test(label))?.[1] ?? [];
-    const open = () => (keys[0] === 'runs' ? document.getElementById('own-runs')?.focus() : keys.some(focusField));
-    return html`<li key=${label}><${Button} kind="measure" onClick=${open} disabled=${!keys.length}>
-        <span class="measure-name">${label}</span><span class="measure-share">
-        <meter min="0" max="100" value=${parseFloat(share)} aria-label=${`${left}: ${share}`}></meter>
-        ${share}</span><//></li>`;
-  })}</ul>
-    <p class="hint">${capital(what)}, and what each ${left}. <a href=${addressOf('design', present({part: 'plan', ...beside}))}
-      data-test="plan-tests">Plan these tests</a></p>
-    <details><summary>Least known inputs</summary><${TextTable} ...${tables.at(-1)} kind="table-frame" />
-      ${answer.answer.stiffness_probes?.map((line) => html`<p key=${line} class="hint">${line}</p>`)}</details>
+    <ul class="measures">
+      ${rows.map(([label, share]) => {
+        const keys = ADVISED.find(([word]) => word.test(label))?.[1] ?? [];
+        const open = () => (keys[0] === 'runs' ? document.getElementById('own-runs')?.focus() : keys.some(focusField));
+        return html`<li key=${label}>
+          <${Button} kind="measure" onClick=${open} disabled=${!keys.length}>
+            <span class="measure-name">${label}</span>
+            <span class="measure-share">
+              <meter min="0" max="100" value=${parseFloat(share)} aria-label=${`${left}: ${share}`}></meter>
+              ${share}
+            </span>
+          <//>
+        </li>`;
+      })}
+    </ul>
+    <p class="hint">
+      ${capital(what)}, and what each ${left}. <a
+        href=${addressOf('design', present({part: 'plan', ...beside}))}
+        data-test="plan-tests"
+      >
+        Plan these tests
+      </a>
+    </p>
+    <details>
+      <summary>Least known inputs</summary>
+      <${TextTable} ...${tables.at(-1)} kind="table-frame" />
+      ${probes.map((line) => html`<p key=${line} class="hint">${line}</p>`)}
+    </details>
   <//>`;
 }
 
-/** Files of own runs: dropped anywhere on the page, or chosen. */
+/**
+ * Files of own runs: dropped anywhere on the page, or chosen.
+ * @param {{view: Texts, onFile: (file: File) => void, note: string}} props
+ */
 function OwnRuns({view, onFile, note}) {
   const [help, setHelp] = useState('');
   const read = async () => {
     const {content, failure} = await ask('api/description');
     const schema = content?.paths['/api/tasks/predict'].post.requestBody.content['application/json'].schema;
-    setHelp(schema?.properties.runs.description ?? failure.text);
+    setHelp(schema?.properties.runs.description ?? failure?.text);
   };
-  return html`<${Card} id="runs-title" title="Own runs" data-test="own-runs"><${RunsChoice} view=${view} onFile=${onFile} />
+  return html`<${Card} id="runs-title" title="Own runs" data-test="own-runs">
+    <${RunsChoice} view=${view} onFile=${onFile} />
     <p class="hint">Or drop a CSV file on this page.</p>
     <${Refusal} text=${note} role="alert" />
-    <details onToggle=${read}><summary>What the file holds</summary><p class="hint">${help || 'Reading…'}</p></details>
+    <details onToggle=${read}>
+      <summary>What the file holds</summary>
+      <p class="hint">${help || 'Reading…'}</p>
+    </details>
   <//>`;
 }
 
-/** Materials and lubrication, which the task takes beside the rig. */
-const Materials = ({view, faultOf, isFirst}) => html`<fieldset class="fields materials"><legend>For wear and heat</legend>
+/**
+ * Materials and lubrication, which the task takes beside the rig.
+ * @param {{view: Texts, faultOf: (name: string) => string|undefined, isFirst: boolean}} props
+ */
+const Materials = ({view, faultOf, isFirst}) => html`<fieldset class="fields materials">
+  <legend>For wear and heat</legend>
   <${MaterialChoices} view=${view} faultOf=${faultOf} isAsked=${!isFirst} />
-  <label class="check"><input type="checkbox" checked=${Boolean(view.lubricant)} data-test="lubricant"
-    onChange=${(event) => change({view: {lubricant: event.target.checked ? 'yes' : null}})} /> The contact is lubricated</label>
+  <label class="check">
+    <input
+      type="checkbox"
+      checked=${Boolean(view.lubricant)}
+      data-test="lubricant"
+      onChange=${(event) => change({view: {lubricant: event.target.checked ? 'yes' : null}})}
+    /> The contact is lubricated
+  </label>
   <${Refusal} text=${faultOf('lubricant')} />
 </fieldset>`;
 
-/** Answers that were kept, beside the answer of now. */
+/**
+ * Answers that were kept, beside the answer of now.
+ * @param {{kept: (KeptAnswer & {id: string})[], now: Content, onRemove: (id: string) => void}} props
+ */
 function Kept({kept, now, onRemove}) {
   if (!kept.length) return null;
-  const found = [...kept.map((one) => one.answer), now].map(numbersOf);
-  const {quantities, point} = found.at(-1);
+  const current = numbersOf(now);
+  const found = [...kept.map((one) => numbersOf(one.answer)), current];
+  const {quantities, point} = current;
   const rows = [
-    ...[...quantities.keys()].map((name) => [name, ...found.map((each) => each.quantities.get(name)).map((of) => (of ? `${of[0]} (${of[1]})` : '–'))]),
+    ...[...quantities.keys()].map((name) => [
+      name,
+      ...found.map((each) => each.quantities.get(name)).map((of) => (of ? `${of[0]} (${of[1]})` : '–')),
+    ]),
     ...[...point.keys()].map((label) => [label, ...found.map((each) => each.point.get(label)?.join(' ') ?? '–')]),
   ];
   return html`<${Card} id="kept-title" title="Kept answers" data-test="kept">
-    <ul class="kept-list">${kept.map((one, place) => html`<li key=${one.id}><span class=${`swatch is-${place}`}></span>
-      <span class="grow">${one.label}</span>
-      <${Button} kind="small" onClick=${() => onRemove(one.id)} aria-label=${`Remove ${one.label}`}>remove<//></li>`)}</ul>
+    <ul class="kept-list">
+      ${kept.map(
+        (one, place) => html`<li key=${one.id}>
+          <span class=${`swatch is-${place}`}></span>
+          <span class="grow">${one.label}</span>
+          <${Button} kind="small" onClick=${() => onRemove(one.id)} aria-label=${`Remove ${one.label}`}>remove<//>
+        </li>`,
+      )}
+    </ul>
     <${TextTable} heads=${['', ...kept.map((one) => one.label), 'now']} rows=${rows} test="differences" />
     <p class="hint">Median, and the interval of ${INTERVAL}.</p>
   <//>`;
 }
 
-/** Answers that were kept, by the fragment of their state. */
+/** Answers that were kept, by the fragment of their state. @type {Map<string, KeptAnswer>} */
 const keptAnswers = new Map();
 
-/** Name of a kept state: its changes, else its rig. */
+/**
+ * Name of a kept state: its changes, else its rig.
+ * @param {State} state
+ */
 function labelOf(state) {
   const texts = Object.values(state.rig.changes);
   return texts.length ? texts.slice(0, 3).join(', ') + (texts.length > 3 ? '…' : '') : state.rig.name;
 }
 
-/** States that the view keeps, with their answers; those that are not known yet are asked for. */
+/**
+ * States that the view keeps, with their answers; those that are not known yet are asked for.
+ * @param {State} state
+ * @param {any} content
+ */
 function useKept(state, content) {
   const [, draw] = useState({});
   const fragments = (state.view.kept ?? '').split('\n').filter(Boolean);
   useEffect(() => {
-    fragments.filter((each) => !keptAnswers.has(each)).forEach(async (fragment) => {
-      const of = await decode(fragment);
-      const reply = await inTurn(fragment, () => callTask('predict', argumentsOf(of, false)));
-      if (reply?.content) keptAnswers.set(fragment, {label: labelOf(of), answer: reply.content});
-      draw({});
-    });
+    fragments
+      .filter((each) => !keptAnswers.has(each))
+      .forEach(async (fragment) => {
+        const of = await decode(fragment);
+        const reply = await inTurn(fragment, () => callTask('predict', argumentsOf(of, false)));
+        if (reply?.content) keptAnswers.set(fragment, {label: labelOf(of), answer: reply.content});
+        draw({});
+      });
   }, [state.view.kept]);
+  /** @param {string[]} some */
   const enter = (some) => change({view: {kept: some.join('\n') || null}});
   const keep = () => {
     const fragment = encode({...state, view: present({...state.view, kept: null})});
     keptAnswers.set(fragment, {label: labelOf(state), answer: content});
     enter([...fragments.filter((each) => each !== fragment), fragment].slice(-MAX_KEPT));
   };
-  const kept = fragments.filter((each) => keptAnswers.has(each)).map((each) => ({id: each, ...keptAnswers.get(each)}));
-  return {kept, keep, remove: (fragment) => enter(fragments.filter((each) => each !== fragment))};
+  const kept = fragments.flatMap((each) => {
+    const answer = keptAnswers.get(each);
+    return answer ? [{id: each, ...answer}] : [];
+  });
+  /** @param {string} fragment */
+  const remove = (fragment) => enter(fragments.filter((each) => each !== fragment));
+  return {kept, keep, remove};
 }
 
-/** What dragging the rule of a panel sets, where a number follows from it without computing. */
+/**
+ * What dragging the rule of a panel sets, where a number follows from it without computing.
+ * @param {RigView|null} view
+ * @param {ChartData} chart
+ */
 function dragOf(view, chart) {
   const keys = new Set(view?.fields.map((field) => field.key));
   return [AMPLITUDE, SPEED].flatMap((key, panel) => {
     if (!keys.has(key) || (key === AMPLITUDE && keys.has(VOLTAGE))) return [];
-    const unit = chart.panels[panel]?.x.unit.replace('µ', 'u');
+    const unit = chart.panels[panel]?.x.unit?.replace('µ', 'u') ?? '';
+    /** @param {number} x @param {boolean} isMoving */
     const set = (x, isMoving) => setEntry(key, typed(x, unit), {replace: isMoving});
-    return [{panel, onMove: (x) => set(x, true), onRelease: (x) => set(x, false)}];
+    return [
+      {
+        panel,
+        /** @param {number} x */
+        onMove: (x) => set(x, true),
+        /** @param {number} x */
+        onRelease: (x) => set(x, false),
+      },
+    ];
   });
 }
 
@@ -167,31 +287,56 @@ export default function Predict() {
   const {content, failure, refused, isWaiting} = reply;
   const {kept, keep, remove} = useKept(state, content);
   useEffect(() => offer('predict', argumentsOf(state, false)), [JSON.stringify(body)]);
+  /** @param {string} key */
   const faultOf = (key) => failure?.faults.find((fault) => fault.key === key)?.text;
   const shown = [...Object.keys(state.rig.changes), 'pin', 'disc', 'lubricant'];
   const extra = html`<${Materials} view=${state.view} faultOf=${faultOf} isFirst=${!content && !failure} />`;
   const ownRuns = html`<${OwnRuns} view=${state.view} onFile=${onFile} note=${note} />`;
   const isDim = useLate(isWaiting || Boolean(failure));
   if (!content) {
-    return html`<${Workspace} extra=${extra} lead=${html`<p class="overline">Predict</p><h1 class="statement is-pending">
-      ${failure ? 'No answer yet' : 'Computing the first answer…'}</h1>
-      <${Failure} failure=${failure} shown=${shown} />`}>${failure ? state.view.runs && ownRuns : html`<div class="skeleton" aria-hidden="true"></div>`}<//>`;
+    return html`<${Workspace}
+      extra=${extra}
+      lead=${html`
+        <p class="overline">Predict</p>
+        <h1 class="statement is-pending">
+          ${failure ? 'No answer yet' : 'Computing the first answer…'}
+        </h1>
+        <${Failure} failure=${failure} shown=${shown} />
+      `}
+    >
+      ${failure ? state.view.runs && ownRuns : html`<div class="skeleton" aria-hidden="true"></div>`}
+    <//>`;
   }
   const [outcome, ...others] = content.answer.statement;
   const [first, rest] = outcome.split(/(?<=\.) (?=[A-Z])(.*)/s);
   const chart = content.charts[0];
-  const lead = html`<p class="overline">${content.answer.rig}</p>
-    <h1 class=${classes('statement', {'is-dim': isDim})} aria-live=${isMoving ? 'off' : 'polite'} data-test="statement">${first}</h1>
+  const lead = html`
+    <p class="overline">${content.answer.rig}</p>
+    <h1 class=${classes('statement', {'is-dim': isDim})} aria-live=${isMoving ? 'off' : 'polite'} data-test="statement">
+      ${first}
+    </h1>
     <div class="row lead-tools">
-      <${Button} onClick=${keep} disabled=${isWaiting || Boolean(failure) || refused.length > 0} data-test="keep">Keep this<//>
-      <span class="status" role="status" data-test="status">${isDim && !failure ? 'Computing…' : ''}</span></div>
-    <${Failure} failure=${failure} shown=${shown} /><${RefusedNote} refused=${refused} />`;
+      <${Button} onClick=${keep} disabled=${isWaiting || Boolean(failure) || refused.length > 0} data-test="keep">
+        Keep this
+      <//>
+      <span class="status" role="status" data-test="status">${isDim && !failure ? 'Computing…' : ''}</span>
+    </div>
+    <${Failure} failure=${failure} shown=${shown} />
+    <${RefusedNote} refused=${refused} />
+  `;
   return html`<${Workspace} lead=${lead} extra=${extra} onFile=${onFile}>
     <div class=${isDim ? 'is-dim' : ''} aria-busy=${isWaiting}>
       <${Numbers} answer=${content} />
       <section class="card" aria-label="Friction over amplitude and over speed">
-        ${chart && html`<${Chart} ...${chart} dimmed=${isDim} drag=${dragOf(view, chart.chart)}
-          kept=${kept.map(({label, answer}) => ({label, chart: answer.charts[0].chart}))} />`}
+        ${
+          chart &&
+          html`<${Chart}
+            ...${chart}
+            dimmed=${isDim}
+            drag=${dragOf(view, chart.chart)}
+            kept=${kept.map(({label, answer}) => ({label, chart: answer.charts[0].chart}))}
+          />`
+        }
       </section>
       <${Kept} kept=${kept} now=${content} onRemove=${remove} />
       <div class="columns">
@@ -199,9 +344,16 @@ export default function Predict() {
         <div class="stack">
           <${Card} id="more-title" title="In words">
             ${[rest, ...others].filter(Boolean).map((line) => html`<p key=${line}>${line}</p>`)}
-            ${content.blocks.slice(-2).filter(({kind}) => kind === 'text').map(({text}) => html`<p class="hint" key=${text}>${text}</p>`)}<//>
-          <section class="card" aria-label="Caveats and assumptions"><${Caveats} answer=${content}
-            isMoving=${isMoving || isWaiting} of=${JSON.stringify(reply.of)} /></section>
+            ${
+              /** @type {Block[]} */ (content.blocks)
+                .slice(-2)
+                .filter(({kind}) => kind === 'text')
+                .map(({text}) => html`<p class="hint" key=${text}>${text}</p>`)
+            }
+          <//>
+          <section class="card" aria-label="Caveats and assumptions">
+            <${Caveats} answer=${content} isMoving=${isMoving || isWaiting} of=${JSON.stringify(reply.of)} />
+          </section>
         </div>
       </div>
     </div>

@@ -1,10 +1,36 @@
-"""Kinds of requests that a worker answers, by name; no function is imported before it is asked for."""
+"""Requests of pages: the files of this computer that they may name, and their kinds, imported when asked for."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any, Final
 
-from sonolube.browser.places import Places
 from sonolube.variants import VariantTable
+
+OPENED: Final = "tribometer"
+"""Name of the example that the first page shows."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Places:
+    """Files of this computer that requests may name.
+
+    Parameters
+    ----------
+    rigs : mapping of str to str
+        Paths of rig files by name, beside those of the examples.
+    uploads : str
+        Folder of the files that were uploaded; empty for none.
+    device_map : str
+        Path of the map of the rig's devices; empty for the virtual tribometer.
+    runs : str
+        Folder of all runs of the laboratory; empty for none.
+    """
+
+    rigs: Mapping[str, str]
+    uploads: str = ""
+    device_map: str = ""
+    runs: str = ""
+
 
 Answering = Callable[[Mapping[str, Any], Places], dict[str, Any]]
 """Answers one kind of request."""
