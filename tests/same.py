@@ -4,8 +4,11 @@ Two ways to one number add its parts in another order, and so do another process
 last digits differ. A number that is stored, sent, printed or read back is one number, and is compared by `==`.
 """
 
+import io
+import re
+import zipfile
 from collections.abc import Mapping
-from dataclasses import asdict, is_dataclass
+from dataclasses import fields, is_dataclass
 from typing import Any
 
 import numpy as np
@@ -51,11 +54,48 @@ def _plain(content: Any) -> Any:
     if isinstance(content, xr.Dataset | xr.DataArray):
         return _plain(content.to_dict(data="array"))
     if is_dataclass(content) and not isinstance(content, type):
-        return asdict(content)
+        return {field.name: getattr(content, field.name) for field in fields(content)}
     if isinstance(content, Mapping):
         return dict(content)
-    if isinstance(content, np.generic):
+    if isinstance(content, np.generic) or (isinstance(content, np.ndarray) and content.ndim == 0):
         return content.item()
     if isinstance(content, np.ndarray):
         return content if np.issubdtype(content.dtype, np.inexact) else content.tolist()
     return list(content) if isinstance(content, tuple | list) else content
+
+
+_NUMBER = re.compile(r"(?<![\w.])([-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?)(?![\w.])")
+
+
+def same_text(one: str, other: str, *, relative: float = ROUNDING, place: str = "") -> None:
+    """Hold two texts to each other, each number within `relative`, which is that of the digits that are written."""
+    words, others = _NUMBER.split(one), _NUMBER.split(other)
+    assert words[0::2] == others[0::2], place
+    for mine, theirs in zip(words[1::2], others[1::2], strict=True):
+        assert mine == theirs or float(mine) == approx(float(theirs), rel=relative, abs=0.0), (
+            f"{place}: {mine}, {theirs}"
+        )
+
+
+def same_files(
+    one: Mapping[str, Any], other: Mapping[str, Any], *, relative: float = ROUNDING, place: str = ""
+) -> None:
+    """Hold texts, and archives of them, to each other by name."""
+    assert sorted(one) == sorted(other), place
+    for name in one:
+        mine, theirs, here = _bytes(one[name]), _bytes(other[name]), f"{place}{name}"
+        if zipfile.is_zipfile(io.BytesIO(mine)):
+            same_files(_unpacked(mine), _unpacked(theirs), relative=relative, place=f"{here}/")
+        else:
+            same_text(mine.decode(), theirs.decode(), relative=relative, place=here)
+
+
+def _bytes(content: Any) -> bytes:
+    """Content of a file, also where it is given as text."""
+    return content.encode() if isinstance(content, str) else bytes(content)
+
+
+def _unpacked(archive: bytes) -> dict[str, bytes]:
+    """Files of an archive by name."""
+    with zipfile.ZipFile(io.BytesIO(archive)) as files:
+        return {name: files.read(name) for name in files.namelist()}
