@@ -14,7 +14,7 @@ OUT := out
 export SURFALIZE_PYTHON ?= $(abspath $(wildcard $(RIVAL)/bin/python))
 
 .DEFAULT_GOAL := help
-.PHONY: help demo app browser quick test lowest surfalize lint docs bench reliability lock clean
+.PHONY: help demo app browser quick test lowest arithmetic surfalize lint docs bench reliability lock clean
 
 help: ## list the targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 16
@@ -45,6 +45,9 @@ lowest: $(LOWEST)/installed ## run a part of the tests with the lowest versions 
 	$(RUN) $(LOWEST)/bin/python -m pytest -q -n 2 --dist worksteal -W ignore::DeprecationWarning -k "not schema_in_the_docs" \
 	    tests/measurement/recordings tests/measurement/impedance tests/measurement/surface_files tests/text \
 	    tests/rig/file tests/models/wear tests/facts/protocol tests/cli/predict
+
+arithmetic: $(VENV)/test ## run a part of the tests with the loops of other processors, and with one thread and four
+	PYTHONDONTWRITEBYTECODE= $(BIN)/python -m tests.arithmetic
 
 surfalize: $(RIVAL)/installed ## install surfalize beside sonolube, for the tests that compare with it
 
