@@ -56,6 +56,9 @@ lowest: $(LOWEST)/installed ## run a part of the tests with the lowest versions 
 	    tests/measurement/recordings tests/measurement/impedance tests/measurement/surface_files tests/text \
 	    tests/rig/file tests/models/wear tests/facts/protocol tests/cli/predict
 
+arithmetic: $(VENV)/test ## run a part of the tests with the loops of other processors, and with one thread and four
+	PYTHONDONTWRITEBYTECODE= $(BIN)/python -m tests.arithmetic
+
 surfalize: $(RIVAL)/installed ## install surfalize beside sonolube, for the tests that compare with it
 
 lint: $(VENV)/test ## mend what ruff and prettier can mend, then check style, types and architecture

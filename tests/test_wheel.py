@@ -9,6 +9,7 @@ import tarfile
 from pathlib import Path
 
 import pytest
+from tests.same import same
 
 from sonolube.tasks.lookup.example import example
 
@@ -80,7 +81,7 @@ def test_an_installed_wheel_computes_the_friction_of_a_rig(programs: Path, tmp_p
     for program in (programs / "sonolube", Path(sys.executable).with_name("sonolube")):
         run = subprocess.run([program, *words], capture_output=True, text=True, check=True, cwd=tmp_path)
         answers.append(json.loads(run.stdout))
-    assert answers[0] == answers[1]
+    same(answers[0], answers[1])
 
 
 def test_an_installed_wheel_has_every_example_file(programs: Path, tmp_path: Path) -> None:

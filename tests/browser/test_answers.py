@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 from hypothesis import given, strategies as st
+from tests.same import same
 from tests.tiers import examples
 
 import sonolube as sl
@@ -33,14 +34,14 @@ def rig(**more: Any) -> dict[str, Any]:
 def test_the_numbers_are_those_of_the_task(task: str) -> None:
     own = read_rig(TRIBOMETER, changes=[f"{key}={value}" for key, value in CHANGES.items()])
     found = answered(task_named(task), {"rig": rig()}, NOWHERE)
-    assert found["answer"] == getattr(sl, task)(own).json_object()
+    same(found["answer"], getattr(sl, task)(own).json_object())
     assert found["caveats"] == list(getattr(sl, task)(own).caveats())
 
 
 def test_a_rig_by_its_text_is_the_same_rig() -> None:
     by_name = answered(task_named("friction"), {"rig": rig()}, NOWHERE)
     by_text = answered(task_named("friction"), {"rig": rig(text=TRIBOMETER.read_text(encoding="utf-8"))}, NOWHERE)
-    assert by_text["answer"] == by_name["answer"]
+    same(by_text["answer"], by_name["answer"])
 
 
 def test_the_rig_that_was_opened_stands_before_the_examples(tmp_path: Path) -> None:
@@ -64,7 +65,7 @@ def test_a_moving_slider_may_leave_out_the_tables() -> None:
     asked = {"task": "predict", "arguments": {"rig": rig(), "draws": 200}}
     (whole, less) = (KINDS["task"](asked | more, NOWHERE) for more in ({}, {"tables": False}))
     (chart,) = whole["charts"]
-    assert less == whole | {"charts": [{name: value for name, value in chart.items() if name != "tables"}]}
+    same(less, whole | {"charts": [{name: value for name, value in chart.items() if name != "tables"}]})
 
 
 @pytest.mark.parametrize(
@@ -147,7 +148,7 @@ def test_uploaded_runs_and_content_in_the_request_are_the_same(tmp_path: Path) -
         answered(task_named("predict"), {"rig": rig(), "draws": 400} | given, Places(rigs={}, uploads=str(tmp_path)))
         for given in (by_upload, by_content)
     ]
-    assert found[0]["answer"] == found[1]["answer"]
+    same(found[0]["answer"], found[1]["answer"])
     assert found[0]["answer"]["runs"] == 4
 
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Any, cast
 
 import pytest
-from pytest import approx
 from starlette.responses import Response
+from tests.same import same
 
 from sonolube.browser.first_page import REQUESTS, computed_answers, shipped_answer, shipped_answers
 from sonolube.browser.routes import Workbench
@@ -16,22 +16,10 @@ from sonolube.browser.worker import Pool, encoded
 CHANGED = {"rig": {"name": "tribometer", "changes": {"contact.normal_load": "4 N"}}}
 
 
-def same(one: Any, other: Any, place: str = "") -> None:
-    """Two objects of JSON are equal, their numbers to the rounding of another processor."""
-    if isinstance(one, dict):
-        assert list(one) == list(other), place
-        for key, value in one.items():
-            same(value, other[key], f"{place}.{key}")
-    elif isinstance(one, list):
-        assert len(one) == len(other), place
-        for at, value in enumerate(one):
-            same(value, other[at], f"{place}[{at}]")
-    else:
-        assert one == (approx(other, rel=1e-6, abs=1e-9) if isinstance(other, float) else other), place
-
-
 def test_shipped_answers_are_those_that_are_computed() -> None:
-    same(shipped_answers(), computed_answers())  # else: python -m sonolube.browser.first_page
+    same(
+        shipped_answers(), computed_answers(), relative=1e-6, absolute=1e-9
+    )  # else: python -m sonolube.browser.first_page
 
 
 def test_they_are_given_to_the_first_page_only_and_while_no_worker_has_started() -> None:

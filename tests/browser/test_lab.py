@@ -14,6 +14,7 @@ import pytest
 from tests.browser.laboratory import HEAD, HOLDER, LONG, OTHER, RIG, SHORT, Asked, laboratory, stop_page, until
 from tests.browser.workbench import served
 from tests.laboratory.test_added_drivers import MAP, PROTOCOL, packages as packages_of_acme, written
+from tests.same import same
 
 import sonolube as sl
 from sonolube.browser.lab import routes
@@ -72,7 +73,7 @@ def test_a_run_outlives_its_killed_server_and_equals_one_that_nobody_disturbed(
         runs_are_compared(second, [record, undisturbed])
     assert notes_of(record) == notes_of(undisturbed)
     for name, values in undisturbed.dataset().items():
-        np.testing.assert_array_equal(record.dataset()[name].to_numpy(), values.to_numpy())
+        same(record.dataset()[name].to_numpy(), values.to_numpy())
     assert {"tags": "tried", "operator": "Ann", "seed": 3}.items() <= record.facts.items()
 
 
@@ -84,10 +85,10 @@ def runs_are_compared(lab: Asked, runs: list[Run]) -> None:
     levels = found["answer"]["levels"]
     numbers = [{key: level[key] for key in level.keys() - {"run", "source"}} for level in levels]
     assert [level["voltage_peak_to_peak"] for level in levels] == [0.0, 20.0] * 2
-    assert numbers[:2] == numbers[2:]
+    same(numbers[:2], numbers[2:])
     assert any("no measurement" in each for each in found["caveats"])
     table = catalogued_runs(f"catalogue:in={runs[0].folder.parent}")
-    assert levels[1]["friction_force"] == table["friction_force"].to_numpy()[0]
+    same(levels[1]["friction_force"], table["friction_force"].to_numpy()[0])
     given = {"name": found["name"], "upload": found["upload"]}
     status, fitted = lab.post("/api/tasks/fit", {"runs": given, "rig": RIG})
     assert (status, "2 runs under one condition" in fitted["text"]) == (422, True)  # read, and too few to rank models
@@ -184,7 +185,7 @@ def runs_are_shown(lab: Asked, record: Run) -> None:
     (listed,) = json.loads(lab.get("/api/lab/runs")[1])["runs"]
     assert (listed["id"], listed["state"], listed["seed"], listed["tags"]) == (name, "stopped", 3, ["tried"])
     shown = json.loads(lab.get(f"/api/lab/runs/{name}")[1])
-    assert shown["answer"] == json.loads(sl.lab.show(record.folder).to_json())
+    same(shown["answer"], json.loads(sl.lab.show(record.folder).to_json()))
     for part in (1, 2):
         status, found = lab.post(f"/api/lab/runs/{name}/upload", {"part": part})
         assert (status, found["name"], found["parts"]) == (200, f"{name}-part-{part}.nc", 2)

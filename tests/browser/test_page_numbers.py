@@ -19,6 +19,7 @@ from playwright.sync_api import Page, expect
 from tests.browser.pages import RIGS, SPEED, VOLTS, enter, numbers, saved, show
 from tests.browser.workbench import Served
 from tests.chromium import CHROMIUM
+from tests.same import same_text
 
 import sonolube as sl
 from sonolube.browser.requests import Places
@@ -36,6 +37,7 @@ PREDICTED = (
 )
 NOTEBOOK: Any = import_module("nbformat")  # which has no types
 CHANGED, DRAWN, TOGETHER = "tribometer", 20, 4
+_NAME_OF_PART = re.compile(r"\b[a-z][0-9a-f]{10}\b")  # by the digest of its numbers
 
 pytestmark = [
     pytest.mark.browser,
@@ -206,7 +208,9 @@ def test_the_table_taken_away_has_the_numbers_of_the_figure(changed: Page, folde
 def test_the_figure_taken_away_is_that_of_the_task(changed: Page, folder: Path) -> None:
     (drawing,) = task().figures().values()
     text, about = re.subn(r"\n <desc>[^<]*</desc>", "", saved(changed, "svg"))
-    assert (text.encode(), about) == (render_figure(drawing.figure(), "svg"), 1)
+    assert about == 1
+    here = render_figure(drawing.figure(), "svg").decode()
+    same_text(*(_NAME_OF_PART.sub("part", each) for each in (text, here)), relative=1e-4)  # six decimals of a point
 
 
 class _Texts(HTMLParser):

@@ -7,6 +7,7 @@ import pytest
 from numpy.typing import NDArray
 from pytest import approx, raises
 from scipy import stats
+from tests.same import same
 
 from sonolube.errors import InvalidInput
 from sonolube.identification import Fact, posterior
@@ -70,7 +71,7 @@ def test_samples_of_one_index_belong_together() -> None:
 
 def test_the_same_seed_gives_the_same_samples() -> None:
     one, other = (posterior(observe, facts=facts(), bounds=BOUNDS, draws=256, seed=3) for _ in range(2))
-    assert np.array_equal(one.draws["a"], other.draws["a"])
+    same(one.draws["a"], other.draws["a"])
 
 
 @pytest.mark.parametrize(("draws", "message"), [(255, "multiple of 4"), (64, "at least 256")])

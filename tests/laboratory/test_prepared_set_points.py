@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from pytest import MonkeyPatch
 from tests.laboratory.simulated_rig import MemoryRecord, SimulatedRig
+from tests.same import same
 
 from sonolube.facts.protocol import Prompt, protocol_from
 from sonolube.laboratory import Devices, DriveSetting, RunControl, run_protocol
@@ -67,7 +68,7 @@ def samples_of(devices: Devices) -> np.ndarray:
 def test_preparation_changes_no_sample_of_the_virtual_tribometer(seed: int) -> None:
     prepared, at_need = (virtual_tribometer(read_rig(RIG), seed=seed).devices for _ in range(2))
     assert prepared.prepare is not None
-    assert np.array_equal(samples_of(prepared), samples_of(replace(at_need, prepare=None)))
+    same(samples_of(prepared), samples_of(replace(at_need, prepare=None)))
 
 
 def test_no_model_is_computed_while_the_virtual_motor_turns(monkeypatch: MonkeyPatch) -> None:

@@ -6,6 +6,7 @@ import numpy as np
 from pytest import approx
 from scipy.stats import multivariate_normal
 from tests.prediction.linear_rigs import LINEAR, conditions, measured_rig
+from tests.same import same
 
 from sonolube.checks import Floats
 from sonolube.prediction.evidence import TestedRig, UncertainConditions, published_rigs
@@ -173,7 +174,7 @@ def test_the_same_seed_gives_the_same_draws() -> None:
     at = uncertain([2e-6], [0.02])
     own = runs([0.5, 0.4], [1e-6, 2e-6], [0.02, 0.02])
     one, other = (ratio_draws(learned().friction, at, count=300, seed=7, own=own) for _ in range(2))
-    assert np.array_equal(one, other)
+    same(one, other)
 
 
 def test_the_density_of_own_tests_is_that_of_a_multivariate_normal_distribution() -> None:

@@ -9,6 +9,7 @@ import pytest
 from pytest import approx, raises
 from tests.identified import identified_tribometer
 from tests.pin_on_disc import pin_on_disc_model, tribometer_test
+from tests.same import same
 
 from sonolube.errors import InvalidInput, SonolubeError, UnknownName
 from sonolube.identification import identify
@@ -100,10 +101,10 @@ def written(folder: Path, text: str) -> Path:
 
 
 def test_the_example_holds_exactly_the_published_facts_with_their_sources() -> None:
-    assert read_facts(FACTS) == tribometer_problem()
+    same(read_facts(FACTS), tribometer_problem())
 
 
-def test_the_example_has_the_forward_model_of_the_published_facts_bit_for_bit() -> None:
+def test_the_example_has_the_forward_model_of_the_published_facts() -> None:
     bounds = tribometer_problem().bounds
     logarithms = np.log(list(bounds.values()))
     points = logarithms[:, 0] + np.diff(logarithms).T[0] * np.random.default_rng(0).random((200, len(bounds)))
@@ -112,20 +113,20 @@ def test_the_example_has_the_forward_model_of_the_published_facts_bit_for_bit() 
     published, expected = tribometer_model()(parameters), pin_on_disc_model(tribometer_test())(parameters)
     assert set(found) == set(published) == set(expected)
     for name, values in expected.items():
-        assert np.array_equal(found[name], values), name
-        assert np.array_equal(published[name], values), name
+        same(found[name], values, place=name)
+        same(published[name], values, place=name)
 
 
 @pytest.mark.slow
-def test_the_example_gives_the_identification_of_the_published_facts_bit_for_bit() -> None:
+def test_the_example_gives_the_identification_of_the_published_facts() -> None:
     problem = read_facts(FACTS)
     found = identify(rig_forward_model(RIG, problem), facts=problem.facts, bounds=problem.bounds)
     expected = identified_tribometer()
-    assert found.estimates == expected.estimates
-    assert found.observed == expected.observed
-    assert found.directions == expected.directions
-    assert found.consistent_fits == expected.consistent_fits
-    assert found.conflicts == expected.conflicts
+    same(found.estimates, expected.estimates)
+    same(found.observed, expected.observed)
+    same(found.directions, expected.directions)
+    same(found.consistent_fits, expected.consistent_fits)
+    same(found.conflicts, expected.conflicts)
 
 
 def test_a_rig_is_identified_from_facts_of_its_own(tmp_path: Path) -> None:

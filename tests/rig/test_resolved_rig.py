@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from pytest import MonkeyPatch, approx, fixture, mark, raises
+from tests.same import same
 
 import sonolube
 from sonolube.errors import InvalidInput, OutsideRange
@@ -82,9 +83,9 @@ def test_parts_are_evaluated_when_first_needed_and_kept(calls: Counter[str]) -> 
 
 def test_a_resolved_rig_answers_as_its_rig() -> None:
     resolved = resolved_rig(REFERENCE)
-    assert friction_point(resolved) == friction_point(REFERENCE)
-    assert simulate(resolved).wear == simulate(REFERENCE).wear
-    assert operating_points(resolved).friction_ratio == operating_points(REFERENCE).friction_ratio
+    same(friction_point(resolved), friction_point(REFERENCE))
+    same(simulate(resolved).wear, simulate(REFERENCE).wear)
+    same(operating_points(resolved).friction_ratio, operating_points(REFERENCE).friction_ratio)
 
 
 def test_another_friction_model_keeps_all_else_that_was_resolved(calls: Counter[str]) -> None:
@@ -97,7 +98,7 @@ def test_another_friction_model_keeps_all_else_that_was_resolved(calls: Counter[
     found = friction_point(other)
     assert (other.vibration, other.gap_law, other.separation) == kept
     assert calls["resolved_vibration"] == calls["gap_law_of"] == calls["rest_separation"] == 1
-    assert found == friction_point(replace(REFERENCE, friction_model=model))
+    same(found, friction_point(replace(REFERENCE, friction_model=model)))
 
 
 def test_the_decay_length_at_rest_is_force_over_stiffness() -> None:

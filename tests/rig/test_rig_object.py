@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from pytest import approx, mark, raises
+from tests.same import same
 
 from sonolube.errors import InvalidInput
 from sonolube.rig import Rig, read_rig, simulate
@@ -19,7 +20,7 @@ def tribometer() -> Rig:
 def test_a_replaced_entry_is_that_of_a_file_with_the_other_value() -> None:
     rig = tribometer().replace("drive.voltage_peak_to_peak", "14 V").replace("friction.friction_coefficient", 0.2)
     changes = ["drive.voltage_peak_to_peak=14V", "friction.friction_coefficient=0.2"]
-    assert simulate(rig).friction == simulate(read_rig(RIGS / "tribometer.toml", changes=changes)).friction
+    same(simulate(rig).friction, simulate(read_rig(RIGS / "tribometer.toml", changes=changes)).friction)
     assert tribometer().drive is not None
     assert rig.friction_coefficient == 0.2
 
@@ -102,7 +103,7 @@ def test_a_replaced_finish_is_read_as_a_file_with_the_other_finish(tmp_path: Pat
     path.write_text(f'{text[:start]}finish = "ground N6"\n\n{text[end:]}', encoding="utf-8")
     replaced = read_rig(path).replace("contact.roughness.finish", "N8")
     changed = read_rig(path, changes=["contact.roughness.finish=N8"])
-    assert replaced.contact.roughness == changed.contact.roughness
+    same(replaced.contact.roughness, changed.contact.roughness)
     assert dict(replaced.assumptions) == dict(changed.assumptions)
     assert {key: one.text for key, one in replaced.uncertainty.items()} == {
         key: one.text for key, one in changed.uncertainty.items()

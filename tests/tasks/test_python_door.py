@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from pytest import CaptureFixture, raises
+from tests.same import same
 
 import sonolube as sl
 from sonolube.charts import draw_chart
@@ -47,7 +48,7 @@ def test_an_answer_its_dataset_and_its_file_draw_the_figure_of_the_room(tmp_path
     for drawable in (found, found.dataset(), stored):
         drawn = sl.plot(drawable).axes[0]
         assert drawn.get_ylabel() == room.get_ylabel()
-        assert np.array_equal(np.asarray(drawn.lines[0].get_ydata()), np.asarray(room.lines[0].get_ydata()))
+        same(np.asarray(drawn.lines[0].get_ydata()), np.asarray(room.lines[0].get_ydata()))
 
 
 def test_a_comparison_has_the_rigs_ratios_of_the_command(tmp_path: Path, capsys: CaptureFixture[str]) -> None:
@@ -57,7 +58,7 @@ def test_a_comparison_has_the_rigs_ratios_of_the_command(tmp_path: Path, capsys:
     command = json.loads(capsys.readouterr().out)
     found = sl.compare(sl.read_rig(TRIBOMETER), model=NAMES)
     for each in command["rig"]["predictions"]:
-        assert float(found["rig_friction_ratio"].sel(model=each["model"])) == each["friction_ratio"]
+        same(float(found["rig_friction_ratio"].sel(model=each["model"])), each["friction_ratio"])
     labels = sl.plot(found, title="models-on-the-rig").axes[0].get_yticklabels()
     assert [label.get_text() for label in labels][-1] == "asperity stick slip"
     assert sl.plot(sl.compare(model=NAMES)).axes

@@ -6,6 +6,7 @@ import pytest
 from pytest import approx
 from tests.identified import identified_tribometer
 from tests.pin_on_disc import tribometer_test
+from tests.same import same
 
 from sonolube.facts.published import ComputedValue, PrintedNumber, propagate_rounding, published_number, si_value
 from sonolube.identification import Identification
@@ -60,7 +61,7 @@ def test_a_fact_of_printed_numbers_has_their_value_and_their_rounding_for_its_to
     name: str, printed: PrintedNumber | ComputedValue
 ) -> None:
     assert FACTS[name].value == printed.value
-    assert FACTS[name].tolerance == (printed.high - printed.low) / 2
+    same(FACTS[name].tolerance, (printed.high - printed.low) / 2)
 
 
 def test_the_other_facts_are_the_printed_numbers_within_tolerances_that_their_reading_leaves() -> None:
@@ -77,7 +78,7 @@ def test_the_other_facts_are_the_printed_numbers_within_tolerances_that_their_re
         "residual_frequency_with_added_mass": ("=", si_value("4.1.2-arm-frequency"), 20.0),
         "arm_mass": ("=", (hung + heaviest) / 2, (heaviest - hung) / 2),
     }
-    assert {name: (FACTS[name].relation, FACTS[name].value, FACTS[name].tolerance) for name in expected} == expected
+    same({name: (FACTS[name].relation, FACTS[name].value, FACTS[name].tolerance) for name in expected}, expected)
 
 
 def test_the_facts_are_observed_under_the_printed_conditions() -> None:
@@ -85,10 +86,10 @@ def test_the_facts_are_observed_under_the_printed_conditions() -> None:
     assert conditions.frequency == si_value("4.1.1-frequency")
     assert conditions.voltage_peak_to_peak == si_value("table-4.1-voltage_peak_to_peak-15")
     assert conditions.normal_load == si_value("table-3.2-normal_load-1")
-    assert conditions.decay_length == float(decay_length(wear_contact()))
+    same(conditions.decay_length, float(decay_length(wear_contact())))
     assert conditions.observation_time == si_value("3.3.4-settling-time")
     added = PROBLEM.observations["residual_frequency_with_added_mass"].conditions.added_mass
-    assert added == tribometer_test().added_mass
+    same(added, tribometer_test().added_mass)
 
 
 def test_the_amplitude_at_28_volts_is_the_same_amplitude_per_volt() -> None:

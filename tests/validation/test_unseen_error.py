@@ -3,6 +3,7 @@
 import numpy as np
 from pytest import approx
 from scipy.special import ellipk
+from tests.same import same
 
 from sonolube.models.friction import AsperityStickSlip, Kinematic
 from sonolube.models.friction.models import FRICTION_MODELS
@@ -29,7 +30,7 @@ def test_the_error_of_the_default_model_is_the_one_that_compare_ranks_by() -> No
     (compared,) = compare_models(compared_models(["asperity-stick-slip"]))
     assert found is not None
     assert compared.assessment is not None
-    assert found.rms == compared.assessment.cross_validation_errors.rms
+    same(found.rms, compared.assessment.cross_validation_errors.rms)
     assert found.rms > compared.assessment.fit_errors.rms
 
 

@@ -10,6 +10,7 @@ import pytest
 from pytest import MonkeyPatch, approx
 from tests.identified import identified_tribometer
 from tests.pin_on_disc import pin_on_disc_model, tribometer_test
+from tests.same import same
 
 from sonolube.identification import Identification
 from sonolube.identification.fact import ForwardModel
@@ -67,13 +68,13 @@ def test_facts_of_a_file_identify_the_same_structure(
     tmp_path: Path, sonolube: Program, rigs: Path, identification: Identification, monkeypatch: MonkeyPatch
 ) -> None:
     def identify(model: ForwardModel, **problem: object) -> Identification:
-        """Identification of the published facts, which tests/rig/test_facts_file.py finds bit for bit from the file."""
+        """Identification of the published facts, which tests/rig/test_facts_file.py finds from the file."""
         expected = tribometer_problem()
-        assert problem == {"facts": expected.facts, "bounds": expected.bounds, "seed": 0}
+        same(problem, {"facts": expected.facts, "bounds": expected.bounds, "seed": 0})
         point = {name: np.array([lower, upper]) for name, (lower, upper) in expected.bounds.items()}
         known = pin_on_disc_model(tribometer_test())(point)
         for name, values in model(point).items():
-            assert np.array_equal(values, known[name]), name
+            same(values, known[name], place=name)
         return identification
 
     monkeypatch.setattr(facts_file, "identify", identify)

@@ -8,6 +8,7 @@ from pytest import MonkeyPatch, approx
 from tests.cli.conftest import Program
 from tests.laboratory import rig_stand_ins
 from tests.laboratory.rig_stand_ins import instrument_rig
+from tests.same import same
 
 from sonolube.laboratory.records import read_run
 
@@ -33,7 +34,7 @@ def test_friction_is_held_before_and_after_a_step_of_speed_beside_the_margins_th
         "--json",
     ).answer
     for name in ("gain_margin", "phase_margin", "delay_margin", "sensitivity_peak", "integral_time"):
-        assert answer[name] == control[name]
+        same(answer[name], control[name])
     folder = Path(answer["folder"])
     assert [Path(path).relative_to(folder).as_posix() for path in answer["files"]] == [
         *(f"hold/held-friction.{ending}" for ending in ("png", "svg", "pdf")),

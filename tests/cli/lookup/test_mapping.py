@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from tests.cli.terminal import rest
+from tests.same import same
 
 import sonolube as sl
 from sonolube.cli import main
@@ -73,7 +74,7 @@ def test_bytes_and_their_mapping_answer_as_files_do(runs: Path) -> None:
     by_bytes = sl.fit(NamedBytes("runs.csv", runs.read_bytes()), mapping=mapping, model=["kinematic-fitted"])
     (runs.parent / "lab.toml").write_text(text)
     by_files = sl.fit(runs, mapping=runs.parent / "lab.toml", model=["kinematic-fitted"])
-    assert by_bytes.object() == by_files.object()
+    same(by_bytes.object(), by_files.object())
     assert by_bytes.every_caveat() == by_files.every_caveat()
     assert "1 column is left out: 'Schmierstoff'" in by_files.caveats()
 

@@ -15,6 +15,7 @@ from typing import Any
 
 import pytest
 from pytest import CaptureFixture, MonkeyPatch, approx, raises
+from tests.same import same, same_text
 from tests.work import calls
 
 from sonolube.cli import main
@@ -111,7 +112,7 @@ def test_questions_on_a_terminal_give_the_same_rig_as_options() -> None:
     assert code == 0, screen
     with raises(SystemExit):
         main(["new", "given.toml", *KNOWN])
-    assert Path("asked.toml").read_text() == Path("given.toml").read_text()
+    same_text(Path("asked.toml").read_text(), Path("given.toml").read_text())
 
 
 def test_of_a_soft_body_the_thickness_is_asked_for() -> None:
@@ -259,4 +260,5 @@ def test_thermal_takes_the_materials_of_the_rig(capsys: CaptureFixture[str]) -> 
         with raises(SystemExit):
             main(["thermal", "rig.toml", "--json", *given])
         answers.append(json.loads(capsys.readouterr().out)["temperature_rise"])
-    assert answers[0] == answers[1] != answers[2]
+    same(answers[0], answers[1])
+    assert answers[2] != pytest.approx(answers[1], rel=1e-3)

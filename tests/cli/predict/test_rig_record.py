@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 from pytest import approx
+from tests.same import same
 
 from sonolube.vocabulary import quantity
 
@@ -91,7 +92,7 @@ def test_another_friction_model_is_taken_by_name(sonolube: Program, rigs: Path) 
 
     result = sonolube("friction", rigs / "tribometer.toml", "--model", "kinematic", "--json").answer
     expected = friction_point(read_rig(rigs / "tribometer.toml"), model="kinematic").friction_ratio
-    assert result["friction_ratio"]["value"] == expected
+    same(result["friction_ratio"]["value"], expected)
 
 
 @pytest.mark.parametrize("command", ["simulate", "response", "transient"])

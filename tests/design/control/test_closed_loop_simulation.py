@@ -5,6 +5,7 @@ import pytest
 from numpy.typing import NDArray
 from pytest import approx
 from scipy.signal import lfilter
+from tests.same import same
 
 from sonolube.design.control import (
     Disturbance,
@@ -75,7 +76,7 @@ def test_the_sensor_noise_is_reproducible_by_its_seed() -> None:
     runs = [
         simulate_closed_loop(loop(feed_forward=True), setpoint=np.full(200, 1.0), disturbance=noisy) for _ in range(2)
     ]
-    assert np.array_equal(runs[0].measured_force, runs[1].measured_force)
+    same(runs[0].measured_force, runs[1].measured_force)
     assert np.std(runs[0].measured_force[50:]) == approx(0.01, rel=0.3)
 
 

@@ -16,6 +16,8 @@ class Clock:
         self._now = time.time()
         self.offset = 0.0
         """Of the time of day, which somebody sets, before the steady clock. [s]"""
+        self.delay = 0.0
+        """By which the process is held up when it reads the time of day next. [s]"""
 
     @classmethod
     @contextmanager
@@ -33,7 +35,9 @@ class Clock:
 
     def time(self) -> float:
         """Time since 1970. [s]"""
-        return self._now + self.offset
+        told = self._now + self.offset
+        self._now, self.delay = self._now + self.delay, 0.0
+        return told
 
     def monotonic(self) -> float:
         """Steady time. [s]"""

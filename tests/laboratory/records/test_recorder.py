@@ -207,6 +207,18 @@ def test_times_do_not_follow_a_clock_that_jumps_and_the_jump_is_noted(tmp_path: 
     assert run.caveats == ("the clock of the computer was set 2 times during the run; times are by sample counters",)
 
 
+def test_a_process_that_is_held_up_between_two_clocks_notes_no_jump(tmp_path: Path) -> None:
+    with Clock.installed() as clock:
+        clock.delay = 3.0
+        recorder = begun(tmp_path)
+        for first in (0, 10, 20):
+            recorder.append(block_of(first, 10))
+            clock.delay = 3.0
+        run = read_run(recorder.finish("completed").folder)
+    assert run.notes == ()
+    assert run.caveats == ()
+
+
 def test_finish_is_once_and_nothing_follows_it(tmp_path: Path) -> None:
     recorder = begun(tmp_path)
     recorder.append(block_of(0, 10))

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from pytest import approx
+from tests.same import same
 
 from sonolube.models.friction.uniform_spline import bicubic_value, in_chunks, spline_coefficients, spline_values
 
@@ -34,4 +35,4 @@ def test_the_error_falls_with_the_fourth_power_of_the_step(count: int, error: fl
 
 def test_values_by_parts_keep_the_order_and_shape_of_arrays_that_broadcast() -> None:
     one, other = np.arange(300.0)[:, None], np.arange(70.0)
-    assert np.array_equal(in_chunks(lambda a, b: 100 * a + b, one, other), 100 * one + other)
+    same(in_chunks(lambda a, b: 100 * a + b, one, other), 100 * one + other)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from pytest import approx, raises
+from tests.same import same
 
 from sonolube.charts import Line, Points, draw_chart
 from sonolube.errors import InvalidInput, UnknownName
@@ -20,11 +21,11 @@ def test_quantities_as_text_and_in_si_give_the_answer_of_the_command(
     with few_points():  # as the terminal computes; compiled kernels round the last digits otherwise
         by_text = control(path, friction="1.5N", duration="40ms", warming="20 K", noise="5 mN")
     options = ("--friction", "1.5N", "--duration", "40ms", "--warming", "20K", "--noise", "5mN")
-    assert by_text.json_object() == on_terminal("control", path, *options)
+    same(by_text.json_object(), on_terminal("control", path, *options))
     coefficient = 1.5 / by_text.rig.normal_load
     with few_points():
         in_si = control(path, friction=coefficient, duration=0.04, warming=20.0, noise=0.005)
-    assert in_si.object() == by_text.object()
+    same(in_si.object(), by_text.object())
 
 
 def test_the_figures_have_the_target_the_limit_and_the_motion_of_the_slider(rigs: Path) -> None:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from pytest import approx, raises
+from tests.same import same
 
 import sonolube as sl
 from sonolube.charts import Line, Points
@@ -22,12 +23,12 @@ def test_runs_as_path_bytes_and_dataset_give_the_answer_of_the_command(
     options = ("--rig", rig, "--target-friction", "0.4N", "--speed", "65.5mm/s")
     expected = on_terminal("efficiency", runs, *options)
     by_path = efficiency(runs, rig=rig, target_friction="0.4N", speed="65.5 mm/s")
-    assert by_path.json_object() == expected
+    same(by_path.json_object(), expected)
     content = NamedBytes("efficiency-runs.csv", runs.read_bytes())
     for given in (content, sl.read_runs(runs)):
         found = efficiency(given, rig=sl.read_rig(rig), target_friction=0.08, speed=0.0655)
         assert found.object()["actuator_power"]["value"] == approx(expected["actuator_power"]["value"])
-        assert found.object()["slope"] == expected["slope"]
+        same(found.object()["slope"], expected["slope"])
 
 
 def test_the_figure_has_every_run_and_the_line_of_the_answer(examples: Path, rigs: Path) -> None:

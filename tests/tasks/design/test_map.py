@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from pytest import raises
+from tests.same import same
 
 import sonolube as sl
 from sonolube.errors import InvalidInput, UnknownName
@@ -33,13 +34,13 @@ def test_other_axes_as_text_and_in_si_make_the_map_of_the_command(
 ) -> None:
     mapped = sl.map(rig, over=OVER)
     options = [word for key, values in OVER.items() for word in ("--over", f"{key}={values}")]
-    assert mapped.json_object() == on_terminal("map", rigs / "power_map.toml", *options, "--form", "png")
+    same(mapped.json_object(), on_terminal("map", rigs / "power_map.toml", *options, "--form", "png"))
     found = mapped.dataset()
     assert found["friction_reduction"].sizes == {"normal_load": 1, "voltage_peak_to_peak": 2, "sliding_speed": 3}
     assert found.attrs["assumptions"]
     assert found.attrs["caveats"]
     numbers = {"sliding.sliding_speed": np.linspace(0.02, 0.2, 3), "contact.normal_load": 5.0, VOLTAGE: (10.0, 20.0)}
-    assert map_of(rig, over=numbers).dataset().equals(found)
+    same(map_of(rig, over=numbers).dataset(), found)
     assert mapped.plot().axes
 
 
@@ -49,8 +50,8 @@ def test_runs_may_be_bytes_and_the_map_stays_that_of_the_model(rig: sl.Rig, tmp_
         map_of(rig, over=OVER, runs=runs) for runs in (tmp_path / "runs.csv", NamedBytes("runs.csv", RUNS.encode()))
     )
     assert list(by_path.figures()) == ["power_map-velocity-power", "power_map-velocity-power-measured"]
-    assert by_path.json_object() == by_bytes.json_object()
-    assert by_bytes.dataset().equals(map_of(rig, over=OVER).dataset())
+    same(by_path.json_object(), by_bytes.json_object())
+    same(by_bytes.dataset(), map_of(rig, over=OVER).dataset())
 
 
 def test_arguments_are_refused_by_their_names(rig: sl.Rig) -> None:

@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 from pytest import approx, raises
+from tests.same import same
 
 import sonolube as sl
 from sonolube.charts import Points, chart_object
@@ -55,7 +56,7 @@ def test_the_figure_of_the_front_for_a_browser_has_a_point_of_each_design(front:
     drawn = [part for part in chart.panels[0].parts if isinstance(part, Points) and not part.is_faint]
     places = sorted((x, y) for part in drawn for x, y in zip(part.x, part.y, strict=True))
     objectives = [design["objectives"] for design in front.object()["front"]]
-    assert places == sorted((each["power"], each["heat"]) for each in objectives)
+    same(places, sorted((each["power"], each["heat"]) for each in objectives))
     notes = [part for part in chart_object(chart)["panels"][0]["parts"] if part["kind"] == "note"]
     assert [type(note["x"]) for note in notes] == [float, float]
 
@@ -65,19 +66,8 @@ def test_a_reduction_is_the_friction_that_it_leaves(rigs: Path) -> None:
         optimise(rigs / "tribometer.toml", over={"drive.frequency": "21kHz:23kHz"}, **target)
         for target in ({"target_friction": 0.341 * 0.5}, {"target_reduction": "50 %"})
     )
-    assert by_reduction.object()["designs"][0] == approx_object(by_friction.object()["designs"][0])
-
-
-def approx_object(content: dict[str, Any]) -> dict[str, Any]:
-    """Object whose numbers are compared to rounding."""
-    return {
-        name: {"value": approx(each["value"], rel=1e-6), "unit": each["unit"]}
-        if isinstance(each, dict) and "value" in each
-        else approx(each, rel=1e-6, abs=1e-12)
-        if name in ("objectives", "limits_used")
-        else each
-        for name, each in content.items()
-    }
+    one, other = (found.object()["designs"][0] for found in (by_reduction, by_friction))
+    same(one, other, relative=1e-6, absolute=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from pytest import approx, raises
+from tests.same import same
 
 import sonolube as sl
 from sonolube.charts import Points, chart_object, draw_chart
@@ -28,9 +29,9 @@ def test_quantities_as_text_and_in_si_give_the_answer_of_the_command(
     table.write_bytes(RUNS)
     expected = on_terminal("plan", path, *OPTIONS, "--measuring-time", "10s", "--runs", table)
     by_text = plan(path, **FEW, measuring_time="10 s", runs=table)
-    assert by_text.json_object() == expected
+    same(by_text.json_object(), expected)
     in_si = plan(sl.read_rig(path), **FEW, measuring_time=10.0, difference=0.1, runs=NamedBytes("runs.csv", RUNS))
-    assert in_si.json_object() == expected
+    same(in_si.json_object(), expected)
 
 
 def test_the_figure_has_every_candidate_and_numbers_the_points(rigs: Path) -> None:
@@ -85,4 +86,4 @@ def test_a_text_for_a_plain_number_and_a_fraction_for_a_whole_one_are_refused(
 def test_whole_numbers_of_numpy_are_whole_numbers(rigs: Path) -> None:
     plain = plan(rigs / "power_map.toml", **FEW).object()
     numbers = {name: np.int64(value) for name, value in {"points": 2, "seed": 0}.items()}
-    assert plan(rigs / "power_map.toml", **(FEW | numbers)).object() == plain
+    same(plan(rigs / "power_map.toml", **(FEW | numbers)).object(), plain)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from pytest import approx, raises
+from tests.same import same
 
 import sonolube as sl
 from sonolube.errors import InvalidInput, UnknownName
@@ -26,7 +27,7 @@ def rig(rigs: Path) -> sl.Rig:
 
 def test_the_answer_is_that_of_the_command_and_of_single_points(rig: sl.Rig, rigs: Path, on_terminal: Terminal) -> None:
     swept = sl.sweep(rig, over={VOLTAGE: "2V:28V:5"})
-    assert swept.json_object() == on_terminal("sweep", rigs / "tribometer.toml", "--over", f"{VOLTAGE}=2V:28V:5")
+    same(swept.json_object(), on_terminal("sweep", rigs / "tribometer.toml", "--over", f"{VOLTAGE}=2V:28V:5"))
     single = [sl.simulate(rig.replace(VOLTAGE, f"{volts} V")) for volts in np.linspace(2, 28, 5)]
     assert swept["friction_ratio"].to_numpy() == approx([float(one["friction_ratio"]) for one in single], abs=1e-6)
     assert "identified from resonance" in swept.dataset().attrs["assumptions"]
@@ -35,12 +36,12 @@ def test_the_answer_is_that_of_the_command_and_of_single_points(rig: sl.Rig, rig
 
 def test_numbers_in_si_text_and_drawn_points_make_the_same_kind_of_sweep(rig: sl.Rig) -> None:
     by_text = sweep(rig, over={VOLTAGE: "10 V, 20 V"}).dataset()
-    assert sweep(rig, over={VOLTAGE: [10.0, 20.0]}).dataset().equals(by_text)
+    same(sweep(rig, over={VOLTAGE: [10.0, 20.0]}).dataset(), by_text)
     drawn = sweep(rig, over={VOLTAGE: "10V:20V"}, **LHS).dataset()
     assert drawn["friction_ratio"].sizes == {"point": 8}
     assert float(drawn["voltage_peak_to_peak"].min()) >= 10
     again = sweep(rig, over={VOLTAGE: (10.0, 20.0)}, **LHS).dataset()
-    assert again["friction_ratio"].equals(drawn["friction_ratio"])
+    same(again["friction_ratio"], drawn["friction_ratio"])
 
 
 def test_a_sweep_that_was_stopped_goes_on_in_its_folder_where_the_terminal_ends_it(
@@ -58,8 +59,8 @@ def test_a_sweep_that_was_stopped_goes_on_in_its_folder_where_the_terminal_ends_
     options = ("--over", f"{SPEED}={over[SPEED]}", "--chunk", "5")
     answer = on_terminal("sweep", rigs / "tribometer.toml", *options)
     whole = sweep(rig, over=over, chunk=5)
-    assert whole.json_object() == answer
-    assert sweep(rig, over=over, chunk=5, keep=place).dataset().equals(whole.dataset())
+    same(whole.json_object(), answer)
+    same(sweep(rig, over=over, chunk=5, keep=place).dataset(), whole.dataset())
     with raises(InvalidInput, match="holds another sweep"):
         sweep(rig, over={SPEED: [0.01]}, keep=place)
 
@@ -73,7 +74,7 @@ def test_progress_is_reported_by_stage(rig: sl.Rig) -> None:
 def test_a_study_of_one_quantity_is_that_of_the_command(rig: sl.Rig, rigs: Path, on_terminal: Terminal) -> None:
     study = sweep(rig, of="voltage", lowest="10V", highest="30V", points=3)
     ends = ("--from", "10V", "--to", "30V", "--points", "3")
-    assert study.json_object() == on_terminal("sweep", rigs / "tribometer.toml", "--of", "voltage", *ends)
+    same(study.json_object(), on_terminal("sweep", rigs / "tribometer.toml", "--of", "voltage", *ends))
     assert study["friction_ratio"].sizes == {"voltage_peak_to_peak": 3}
 
 

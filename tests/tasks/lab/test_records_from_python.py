@@ -9,6 +9,7 @@ from tests.laboratory.catalogue.test_catalogue import run_of
 from tests.laboratory.records.recorded import begun, recorded
 from tests.laboratory.records.test_recovery import unfinished
 from tests.laboratory.rig_stand_ins import EXAMPLE, analogue_rig
+from tests.same import same
 
 from sonolube.errors import InvalidInput
 from sonolube.tasks import lab
@@ -18,8 +19,8 @@ def test_runs_are_found_by_the_same_texts_and_are_a_dataset(tmp_path: Path, sono
     run_of(tmp_path)
     run_of(tmp_path, normal_load=9.0, tags="map")
     found = lab.runs(tmp_path, material=["brass"])
-    assert json.loads(found.to_json()) == _without_files(
-        sonolube("lab", "runs", tmp_path, "--material", "brass", "--json")
+    same(
+        json.loads(found.to_json()), _without_files(sonolube("lab", "runs", tmp_path, "--material", "brass", "--json"))
     )
     assert found["normal_load"].to_numpy() == approx([5.0, 9.0])
     assert found["normal_load"].attrs["units"] == "N"
@@ -37,7 +38,7 @@ def test_facts_of_recordings_that_are_taken_in_are_a_mapping(tmp_path: Path) -> 
 def test_a_run_is_shown_with_its_figure_and_its_recording(tmp_path: Path, sonolube: Program) -> None:
     folder = recorded(tmp_path)
     shown = lab.show(folder)
-    assert shown.json_object() == _without_files(sonolube("lab", "show", folder, "--json"))
+    same(shown.json_object(), _without_files(sonolube("lab", "show", folder, "--json")))
     assert len(shown.plot().axes) == len(shown.run.summary.channels)
     assert shown.dataset().sizes["time"] == shown.run.summary.samples
 
@@ -70,9 +71,7 @@ def test_an_export_is_its_files_and_their_dataset(tmp_path: Path) -> None:
 def test_devices_are_checked_and_read_with_everything_off(tmp_path: Path, sonolube: Program) -> None:
     checked = lab.check(EXAMPLE, protocol="map_test")
     assert checked.is_failure  # no driver is installed here
-    assert checked.json_object() == _without_files(
-        sonolube("lab", "check", EXAMPLE, "--protocol", "map_test", "--json")
-    )
+    same(checked.json_object(), _without_files(sonolube("lab", "check", EXAMPLE, "--protocol", "map_test", "--json")))
     with analogue_rig(tmp_path) as rig:
         rig.was_on()
         read = lab.check(tmp_path / "devices.toml", connect=True)

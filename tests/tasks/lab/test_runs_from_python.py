@@ -9,6 +9,7 @@ from pytest import MonkeyPatch, approx, raises
 from tests.cli.conftest import Program
 from tests.laboratory import rig_stand_ins
 from tests.laboratory.rig_stand_ins import analogue_rig
+from tests.same import same
 
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.facts.protocol import Prompt
@@ -196,15 +197,15 @@ def test_python_and_the_terminal_run_the_same(folder: Path, tmp_path: Path, sono
     for name in ("folder", "recordings"):
         typed.pop(name), called.pop(name)
     typed.pop("files")
-    assert called == typed
+    same(called, typed)
 
 
 def test_si_and_text_hold_the_same_friction(folder: Path) -> None:
     given = {"run_in": "100ms", "duration": "1s", "step_to": "40mm/s", "step_at": "0.5s", "friction_limit": "5N"}
     numbers = {"run_in": 0.1, "duration": 1.0, "step_to": 0.04, "step_at": 0.5, "friction_limit": 5.0}
     one, other = (lab.hold(RIG, out=folder, **values).object() for values in (given, numbers))
-    assert one["phases"] == other["phases"]
-    assert one["friction_force"] == other["friction_force"]
+    same(one["phases"], other["phases"])
+    same(one["friction_force"], other["friction_force"])
 
 
 def test_a_dry_run_touches_nothing(folder: Path, protocol: Path) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from pytest import approx, raises
+from tests.same import same
 
 from sonolube.errors import UnknownName
 from sonolube.facts.materials import material
@@ -32,7 +33,7 @@ def test_the_answer_in_python_is_that_of_the_terminal(
 ) -> None:
     monkeypatch.setenv("COLUMNS", "80")
     answer = function(*arguments)
-    assert answer.json_object() == sonolube(function.__name__, *arguments, "--json").answer
+    same(answer.json_object(), sonolube(function.__name__, *arguments, "--json").answer)
     assert f"{answer}\n" == sonolube(function.__name__, *arguments).out
 
 

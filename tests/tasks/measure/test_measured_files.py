@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 from numpy.typing import NDArray
 from pytest import CaptureFixture, approx, raises
+from tests.same import same
 
 from sonolube.cli import main
 from sonolube.errors import InvalidInput, SonolubeError, UnknownName
@@ -57,11 +58,11 @@ def test_friction_in_python_is_the_answer_of_the_program(recording: Path, capfd:
     words = ["--sliding-speed", "20mm/s", "--window", "1s", "--test-sheet", SHEET]
     program = printed(capfd, "measure", "friction", recording, *words)
     answer = measure.friction(recording, sliding_speed="20mm/s", window="1s", test_sheet=SHEET)
-    assert json.loads(answer.to_json()) == program
+    same(json.loads(answer.to_json()), program)
     in_si = measure.friction([as_bytes(recording)], sliding_speed=0.02, window=1.0, test_sheet=as_bytes(SHEET))
     content = json.loads(in_si.to_json())
     assert content.pop("settings") == {"sliding speed": "0.02 m/s", "window": "1.0 s"}
-    assert content == {name: each for name, each in program.items() if name != "settings"}
+    same(content, {name: each for name, each in program.items() if name != "settings"})
 
 
 def test_the_conditions_of_the_test_are_printed_below_its_numbers(recording: Path) -> None:
@@ -82,12 +83,12 @@ def test_a_surface_of_a_bare_grid_takes_its_spacing_as_the_program_does(
 ) -> None:
     program = printed(capfd, "measure", "surface", plate, "--spacing", "1um", "--long-cutoff", "40um")
     text = measure.surface(plate, spacing="1um", long_cutoff="40um")
-    assert json.loads(text.to_json()) == program
+    same(json.loads(text.to_json()), program)
     in_si = measure.surface(as_bytes(plate), spacing=1e-6, long_cutoff=40e-6)
-    assert in_si.object()["results"] == program["results"]
+    same(in_si.object()["results"], program["results"])
     values = in_si.dataset()
     for name, value in program["results"][0]["values"].items():
-        assert float(values[name]) == value["value"]
+        same(float(values[name]), value["value"])
         assert values[name].attrs["units"] == (value["unit"] or "1")
     assert text.plot().axes
     assert repr(text).startswith("plate.npy\n")
@@ -108,7 +109,7 @@ def test_a_grid_may_have_two_spacings_and_points_need_a_unit(tmp_path: Path, cap
     )
     for name, option, given in calls:
         program = printed(capfd, "measure", "surface", tmp_path / name, *option)
-        assert json.loads(measure.surface(tmp_path / name, **given).to_json()) == program
+        same(json.loads(measure.surface(tmp_path / name, **given).to_json()), program)
     with raises(InvalidInput, match="give spacing_x and spacing_y"):
         measure.surface(tmp_path / "grid.npy")
     with raises(InvalidInput, match=r"^spacing 1N is a force; expected a length"):
@@ -121,11 +122,11 @@ def test_a_groove_in_python_is_the_answer_of_the_program(tmp_path: Path, capfd: 
     path = tmp_path / "groove.npy"
     np.save(path, section + 5e-8 * np.random.default_rng(3).standard_normal((120, 160)))
     program = printed(capfd, "measure", "groove", path, "--spacing", "8um")
-    assert json.loads(measure.groove(path, spacing="8um").to_json()) == program
+    same(json.loads(measure.groove(path, spacing="8um").to_json()), program)
     (in_si,) = measure.groove(as_bytes(path), spacing=8e-6).object()["results"]
     assert in_si.pop("title") == "groove.npy"  # of bytes there is no folder
     assert program["results"][0].pop("title") == f"{tmp_path.name}/groove.npy"
-    assert [in_si] == program["results"]
+    same([in_si], program["results"])
     with raises(InvalidInput, match=r"^a ring needs groove_diameter and sliding_distance; without_vibration is"):
         measure.groove(path, spacing=8e-6, groove_diameter=0.05)
 
@@ -135,9 +136,9 @@ def test_a_rotation_in_python_is_the_answer_of_the_program(tmp_path: Path, capfd
     pulse = np.exp(-(((0.8 * time % 1 - 0.5) / 0.03) ** 2))
     path = table(tmp_path / "hall.csv", "time (s),magnetic_flux_density (mT)", time, pulse)
     program = printed(capfd, "measure", "rotation", path, "--groove-diameter", "50mm", "--magnets", "2")
-    assert json.loads(measure.rotation(path, groove_diameter="50mm", magnets=2).to_json()) == program
+    same(json.loads(measure.rotation(path, groove_diameter="50mm", magnets=2).to_json()), program)
     in_si = measure.rotation([as_bytes(path)], groove_diameter=0.05, magnets=2)
-    assert in_si.object()["results"] == program["results"]
+    same(in_si.object()["results"], program["results"])
     with raises(InvalidInput, match=r"^groove_diameter 5N is a force"):
         measure.rotation(path, groove_diameter="5N")
 
@@ -151,7 +152,7 @@ def test_a_temperature_in_python_is_the_answer_of_the_program(tmp_path: Path, ca
     words = ["--start-time", "4s", "--end-time", "59s", "--without-vibration", idle]
     program = printed(capfd, "measure", "temperature", path, *words)
     answer = measure.temperature(path, start_time="4s", end_time="59s", without_vibration=idle)
-    assert json.loads(answer.to_json()) == program
+    same(json.loads(answer.to_json()), program)
     values = program["results"][0]["values"]
     assert values["final_temperature_rise"]["value"] == approx(18, rel=5e-3)
     (term,) = answer.sheets[0].tables[0].rows
@@ -171,10 +172,10 @@ def test_a_calibration_in_python_is_the_answer_of_the_program(tmp_path: Path, ca
     words = ["--apply", path, "--displacement-uncertainty", "1um", "--degree", "2"]
     program = printed(capfd, "measure", "calibration", path, *words)
     text = measure.calibration(path, apply=[path], displacement_uncertainty="1um", degree=2)
-    assert json.loads(text.to_json()) == program
+    same(json.loads(text.to_json()), program)
     one = as_bytes(path)
     in_si = measure.calibration(one, apply=[one], displacement_uncertainty=1e-6, degree=2)
-    assert in_si.object()["results"] == program["results"]
+    same(in_si.object()["results"], program["results"])
     with raises(InvalidInput, match=r"^displacement_uncertainty has no meaning without apply"):
         measure.calibration(path, displacement_uncertainty=1e-6)
     with raises(InvalidInput, match=r"^apply needs one calibration, got 2 files$"):
@@ -190,9 +191,9 @@ def test_a_spectrum_in_python_is_the_answer_of_the_program(tmp_path: Path, capfd
     words = ["--residual", "log-magnitude", "--series-resistance", "2ohm"]
     program = printed(capfd, "measure", "impedance", path, *words)
     text = measure.impedance(path, residual="log-magnitude", series_resistance="2ohm")
-    assert json.loads(text.to_json()) == program
+    same(json.loads(text.to_json()), program)
     in_si = measure.impedance(as_bytes(path), residual="log-magnitude", series_resistance=2.0)
-    assert in_si.object()["results"] == program["results"]
+    same(in_si.object()["results"], program["results"])
     with raises(InvalidInput, match=r"^branches has no meaning for stack_of; it is for an equivalent circuit$"):
         measure.impedance(path, stack_of=ROOT / "examples" / "rigs" / "tribometer.toml", branches=2)
 
@@ -204,9 +205,9 @@ def test_a_vibration_in_python_is_the_answer_of_the_program(tmp_path: Path, capf
     shapes = tmp_path / "shapes.csv"
     shapes.write_text("1,0\n0.5,1\n")
     program = printed(capfd, "measure", "vibration", path, "--frequency", "1kHz", "--modes", shapes)
-    assert json.loads(measure.vibration(path, frequency="1kHz", modes=shapes).to_json()) == program
+    same(json.loads(measure.vibration(path, frequency="1kHz", modes=shapes).to_json()), program)
     in_si = measure.vibration(as_bytes(path), frequency=1000.0, modes=as_bytes(shapes))
-    assert in_si.object()["results"] == program["results"]
+    same(in_si.object()["results"], program["results"])
     assert list(in_si.dataset()["modes_assurance"].values) == approx(
         [row["assurance"] for row in program["results"][0]["tables"]["modes"]["rows"]]
     )

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 from pytest import approx, raises
+from tests.same import same
 
 import sonolube as sl
 from sonolube.errors import InvalidInput, UnknownName
@@ -54,22 +55,22 @@ def test_text_numbers_in_si_and_the_terminal_give_one_answer(
 ) -> None:
     options = [word for name, value in text.items() for word in (f"--{name.replace('_', '-')}", value)]
     by_text = task(tribometer, **text)
-    assert by_text.json_object() == on_terminal(task.__name__, tribometer, *options)
-    assert task(read_rig(tribometer), **{**text, **in_si}).json_object() == by_text.json_object()
+    same(by_text.json_object(), on_terminal(task.__name__, tribometer, *options))
+    same(task(read_rig(tribometer), **{**text, **in_si}).json_object(), by_text.json_object())
     assert by_text.dataset().attrs["assumptions"]
 
 
 def test_a_response_has_its_ends_by_names_without_those_of_python(tribometer: Path, on_terminal: Terminal) -> None:
     found = response(tribometer, lowest=15e3, highest="35 kHz")
-    assert found.json_object() == on_terminal("response", tribometer, "--from", "15kHz", "--to", "35kHz")
-    assert float(found["amplitude_per_volt"].max()) == found.object()["amplitude_per_volt"]["value"]
+    same(found.json_object(), on_terminal("response", tribometer, "--from", "15kHz", "--to", "35kHz"))
+    same(float(found["amplitude_per_volt"].max()), found.object()["amplitude_per_volt"]["value"])
     with raises(InvalidInput, match=r"^lowest 35kHz must lie above 0 Hz and below highest 15kHz$"):
         response(tribometer, lowest="35kHz", highest="15kHz")
 
 
 def test_several_heats_of_vibration_follow_one_another(tribometer: Path) -> None:
     two, last = (thermal(tribometer, **BODIES, vibration_heat=heat) for heat in ("1W, 2W", 2.0))
-    assert two.object()["vibration_heat_rate"] == last.object()["vibration_heat_rate"]
+    same(two.object()["vibration_heat_rate"], last.object()["vibration_heat_rate"])
     assert two.object()["temperature_rise"] != last.object()["temperature_rise"]
 
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 from pytest import raises
+from tests.same import same
 
 import sonolube as sl
 from sonolube.errors import UnknownName
@@ -24,13 +25,15 @@ def test_a_prediction_with_runs_is_that_of_the_terminal_by_path_bytes_and_datase
     tribometer: Path, runs: Path, on_terminal: Terminal
 ) -> None:
     by_path = sl.predict(tribometer, runs=runs, seed=3)
-    assert by_path.json_object() == on_terminal("predict", tribometer, "--runs", runs, "--seed", 3)
+    same(by_path.json_object(), on_terminal("predict", tribometer, "--runs", runs, "--seed", 3))
     for other in (NamedBytes("runs.csv", runs.read_bytes()), sl.read_runs(runs)):
-        assert sl.predict(tribometer, runs=other, seed=3).json_object() == by_path.json_object()
+        same(sl.predict(tribometer, runs=other, seed=3).json_object(), by_path.json_object())
     assert by_path.plot().axes
     assert sl.plot(by_path.dataset()).axes
-    low, high = by_path["friction_ratio"].quantile([0.1, 0.9]).to_numpy()
-    assert [low, high] == by_path.object()["friction_ratio"]["interval_80"]
+    same(
+        by_path["friction_ratio"].quantile([0.1, 0.9]).to_numpy().tolist(),
+        by_path.object()["friction_ratio"]["interval_80"],
+    )
 
 
 def test_a_laboratory_is_a_mapping_of_files_or_pairs_of_rigs_and_runs(
@@ -38,9 +41,9 @@ def test_a_laboratory_is_a_mapping_of_files_or_pairs_of_rigs_and_runs(
 ) -> None:
     other = examples / "rigs" / "power_map.toml"
     by_path = sl.predict(tribometer, laboratory={str(other): runs})
-    assert by_path.json_object() == on_terminal("predict", tribometer, "--laboratory", f"{other}={runs}")
+    same(by_path.json_object(), on_terminal("predict", tribometer, "--laboratory", f"{other}={runs}"))
     pairs = [(sl.read_rig(other), sl.read_runs(runs))]
-    assert sl.predict(tribometer, laboratory=pairs).json_object() == by_path.json_object()
+    same(sl.predict(tribometer, laboratory=pairs).json_object(), by_path.json_object())
     assert by_path.object()["friction_ratio"] != sl.predict(tribometer).object()["friction_ratio"]
 
 

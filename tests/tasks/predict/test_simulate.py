@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from pytest import approx
+from tests.same import same
 
 import sonolube as sl
 from sonolube.charts import draw_chart
@@ -21,10 +22,10 @@ def test_a_simulation_in_python_has_the_numbers_and_notes_of_the_command(
 ) -> None:
     path = examples / "rigs" / f"{name}.toml"
     command, found = on_terminal("simulate", path), sl.simulate(sl.read_rig(path))
-    assert found.json_object() == command
+    same(found.json_object(), command)
     result = found.dataset()
     for quantity in ("friction_ratio", "friction_force", "vibration_amplitude"):
-        assert float(result[quantity]) == command[quantity]["value"]
+        same(float(result[quantity]), command[quantity]["value"])
         assert result[quantity].attrs["units"] == (command[quantity]["unit"] or "1")
     assert result.attrs["caveats"].split("\n") == (command["caveats"] or [""])
     assert result.attrs["status"] == command["status"]
@@ -44,13 +45,14 @@ def test_an_answer_and_its_file_draw_the_figure_of_the_command(tribometer: Path,
     for own, other in zip(lines[0], lines[1], strict=True):
         assert np.asarray(own) == approx(np.asarray(other))
     for own, other in zip(lines[0], lines[2], strict=True):
-        assert np.array_equal(own, other)
+        same(own, other)
 
 
 def test_an_entry_replaced_in_python_is_that_of_the_terminal(
     tribometer: Path, on_terminal: Callable[..., dict[str, Any]]
 ) -> None:
     replaced = sl.read_rig(tribometer).replace("drive.voltage_peak_to_peak", "14 V")
-    assert sl.simulate(replaced).json_object() == on_terminal(
-        "simulate", tribometer, "--set", "drive.voltage_peak_to_peak=14V"
+    same(
+        sl.simulate(replaced).json_object(),
+        on_terminal("simulate", tribometer, "--set", "drive.voltage_peak_to_peak=14V"),
     )

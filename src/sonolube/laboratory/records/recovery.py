@@ -33,14 +33,14 @@ from sonolube.storage.files import clear_unfinished, is_locked, locked_folder, u
 from sonolube.storage.growing_files import AppendedFile
 
 _MIN_JUMP: Final = 0.5  # s; larger than what a time service corrects at once without stepping the clock
+_AT_ONCE: Final = 0.05  # s, between two clocks that are read together
 
 
 class RunClock:
     """Time of day that goes on evenly although the clock of the computer is set meanwhile."""
 
     def __init__(self) -> None:
-        self.begun = time.time()
-        self._steady = time.monotonic()
+        self.begun, self._steady = _both_clocks()
         self._ahead = 0.0  # of the clock of the computer before this one
 
     def now(self) -> float:
@@ -49,12 +49,21 @@ class RunClock:
 
     def jump(self) -> float:
         """Jump of the computer's clock since the last call, positive where it was set forward; else 0. [s]"""
-        ahead = time.time() - self.now()
+        day, steady = _both_clocks()
+        ahead = day - (self.begun + steady - self._steady)
         jump = ahead - self._ahead
         if abs(jump) < _MIN_JUMP:
             return 0.0
         self._ahead = ahead
         return jump
+
+
+def _both_clocks() -> tuple[float, float]:
+    """Time of day and steady time, read together: once more where the process was held up between. [s]"""
+    while True:
+        before, day, after = time.monotonic(), time.time(), time.monotonic()
+        if after - before < _AT_ONCE:
+            return day, after
 
 
 NoteGap = Callable[[int, Mapping[str, str | float]], None]

@@ -191,6 +191,7 @@ _MIN_PIXELS = 5  # per cutoff (ISO 25178-3, table 1)
 _BISQUARE_REACH = 4.4478  # medians of the absolute residuals, three standard deviations (ISO 16610-31)
 _MAX_ITERATIONS = 50
 _CONVERGED = 1e-3  # relative change of the scale
+_MIN_SCALE = 1e-12  # over the largest height: smaller residuals are rounding, whose median never settles
 
 
 def low_pass(surface: HeightMap, *, cutoff_length: float, order: int = 0, robust: bool = False) -> HeightMap:
@@ -234,7 +235,8 @@ def low_pass(surface: HeightMap, *, cutoff_length: float, order: int = 0, robust
     reproduces constants exactly and deviates towards the mean within one cutoff of an edge; order 2 reproduces every
     paraboloid.
     The robust filter weighs residuals by Tukey's bisquare at three standard deviations, iterated until the scale
-    converges; the standard uses it with order 2.
+    converges; the standard uses it with order 2. The scale is 1e-12 of the largest deviation from the mean height or
+    more: where the surface is its own waviness the residuals are rounding, whose median moves with every iteration.
 
     References
     ----------
@@ -364,10 +366,10 @@ def _smooth(height: Floats, widths: Widths, *, order: int, robust: bool) -> Floa
 
 def _robust_smooth(z: Floats, measured: Mask, smooth: Floats, widths: Widths, order: int) -> Floats:
     """Robust regression by iteratively reweighted least squares with Tukey's bisquare, from a first smooth."""
-    scale = math.inf
+    scale, floor = math.inf, _MIN_SCALE * float(np.max(np.abs(z)))
     for _ in range(_MAX_ITERATIONS):
         residual = np.abs(z - smooth)
-        previous, scale = scale, _BISQUARE_REACH * float(np.median(residual[measured]))
+        previous, scale = scale, max(_BISQUARE_REACH * float(np.median(residual[measured])), floor)
         if scale == 0 or abs(previous - scale) <= _CONVERGED * scale:
             return smooth
         weights = measured * np.maximum(0.0, 1 - (residual / scale) ** 2) ** 2

@@ -9,6 +9,8 @@ from pytest import approx, raises
 
 pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 
+from tests.same import same
+
 from sonolube.errors import InvalidInput
 from sonolube.models.actuator import tightening_preload
 from sonolube.models.fem.parts.transducers import Transducer, stack_transducer
@@ -78,9 +80,9 @@ def test_the_preload_stands_in_both_bodies_with_opposite_forces() -> None:
     loaded, bare = stress(BOLTED, amplitude=1e-6, preload=20e3), stress(BOLTED, amplitude=1e-6)
     assert loaded.stack_mean == approx(-20e3 / STACK_AREA, rel=5e-3)
     assert loaded.rod_mean == approx(20e3 / ROD_AREA, rel=5e-3)
-    assert (loaded.stack_amplitude, loaded.rod_amplitude) == (bare.stack_amplitude, bare.rod_amplitude)
-    assert loaded.highest_stack_stress == loaded.stack_mean + loaded.stack_amplitude
-    assert loaded.highest_rod_stress == loaded.rod_mean + loaded.rod_amplitude
+    same((loaded.stack_amplitude, loaded.rod_amplitude), (bare.stack_amplitude, bare.rod_amplitude))
+    same(loaded.highest_stack_stress, loaded.stack_mean + loaded.stack_amplitude)
+    same(loaded.highest_rod_stress, loaded.rod_mean + loaded.rod_amplitude)
     quarter = stress(BOLTED, amplitude=1e-6, preload=20e3, copies=4)
     assert 4 * quarter.rod_mean == approx(loaded.rod_mean)
 
