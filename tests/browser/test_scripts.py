@@ -22,7 +22,7 @@ def tool(package: str) -> tuple[str, ...]:
     if npx is None:
         pytest.skip("npx is missing: apt-get install nodejs npm")
     (pin,) = (each for each in PINS if each.startswith(f"{package}@"))
-    words = (npx, "--yes", "--prefer-offline", "--package", pin)
+    words = (npx, "--yes", "--prefer-offline", "--fetch-retries=0", "--package", pin)
     if subprocess.run([*words, "-c", "true"], cwd=ROOT, capture_output=True, check=False).returncode:
         pytest.skip(f"neither the cache of npm nor a registry has {pin}: {REGISTRY}")
     return (*words, "--")
