@@ -15,7 +15,7 @@ from sonolube.charts.chart import Part
 from sonolube.facts.protocol import STEP_KINDS
 from sonolube.laboratory.states import OUTCOMES, State
 from sonolube.measurement.file_kind import FileKind
-from sonolube.report.blocks import Rows, Table, Verbatim
+from sonolube.report.blocks import Block, Rows, Table, Verbatim
 from sonolube.report.measured.scan import ShownHeights
 from sonolube.tasks.measure.spectra import impedance
 
@@ -94,12 +94,13 @@ def test_a_list_of_a_script_has_all_of_the_table(name: str) -> None:
     assert listed == table
 
 
+def test_the_blocks_above_are_of_every_kind() -> None:
+    assert {type(each) for each in BLOCKS} == {*get_args(Block)}
+
+
 @pytest.mark.parametrize("path", sorted((STATIC / "scripts" / "lab").glob("*.js")), ids=lambda path: path.name)
 def test_no_script_of_the_laboratory_names_a_kind_of_step(path: Path) -> None:
     quoted = re.findall(r"['\"`]([a-z_]+)['\"`]", path.read_text(encoding="utf-8"))
     named = re.findall(r"[{,] *([a-z]+_[a-z_]+):", path.read_text(encoding="utf-8"))
-    kinds = set(STEP_KINDS) - {
-        "prompt",
-        "repeat",
-    }  # the word of a dialogue, and of the lane of what stands around steps
+    kinds = {*STEP_KINDS} - {"prompt", "repeat"}  # words of a dialogue, and of a lane
     assert {*quoted, *named} & kinds == set()
