@@ -81,12 +81,14 @@ def same_text(one: str, other: str, *, relative: float = ROUNDING, place: str = 
 def same_files(
     one: Mapping[str, Any], other: Mapping[str, Any], *, relative: float = ROUNDING, place: str = ""
 ) -> None:
-    """Hold texts, and archives of them, to each other by name; pictures are looked for by name alone."""
+    """Hold texts, datasets and archives of them to each other by name; pictures are looked for by name alone."""
     assert sorted(one) == sorted(other), place
     for name in one:
         mine, theirs, here = _bytes(one[name]), _bytes(other[name]), f"{place}{name}"
         if zipfile.is_zipfile(io.BytesIO(mine)):
             same_files(_unpacked(mine), _unpacked(theirs), relative=relative, place=f"{here}/")
+        elif name.endswith(".nc"):
+            same(*(xr.load_dataset(io.BytesIO(each), engine="h5netcdf") for each in (mine, theirs)), place=here)
         elif not name.endswith(_PICTURES):
             same_text(mine.decode(), theirs.decode(), relative=relative, place=here)
 

@@ -7,9 +7,9 @@ from tests import arithmetic
 from tests.arithmetic import COMPILED, CORE, NUMBA, NUMPY, PART, THREADS, environment, settings
 
 ROOT = Path(__file__).parents[1]
-WIDE = {"dispatched": ["X86_V3", "X86_V4"], "vectors": ["SSE42", "AVX2", "X86_V3", "X86_V4"], "cores": 8}
-NARROW = {"dispatched": ["X86_V3"], "vectors": ["SSE42", "AVX2", "X86_V3"], "cores": 2}
-OTHER = {"dispatched": [], "vectors": ["NEON"], "cores": 2}  # another family of processors
+WIDE = {"dispatched": ["X86_V3", "X86_V4"], "vectors": ["SSE42", "AVX2", "X86_V3", "X86_V4"], "cores": 8, "core": "Zen"}
+NARROW = {"dispatched": ["X86_V3"], "vectors": ["SSE42", "AVX2", "X86_V3"], "cores": 2, "core": "Haswell"}
+OTHER = {"dispatched": [], "vectors": ["NEON"], "cores": 2, "core": "NeoverseN1"}  # another family of processors
 
 
 def test_the_part_is_there() -> None:
@@ -29,7 +29,10 @@ def test_a_processor_with_wide_vectors_runs_every_setting() -> None:
 @pytest.mark.parametrize(
     ("own", "left_out"),
     [
-        (NARROW, ["numpy with the lowest of its loops for this processor", "OpenBLAS for SkylakeX"]),
+        (
+            NARROW,
+            ["numpy with the lowest of its loops for this processor", "OpenBLAS for Haswell", "OpenBLAS for SkylakeX"],
+        ),
         (
             OTHER,
             [

@@ -25,6 +25,7 @@ WORDS = {  # what gives words, paths and whole numbers, whatever numbers it is g
 
 # comparisons of one number, by file: how many are found, and why both sides are that number
 ONE_NUMBER: dict[str, tuple[int, str]] = {
+    "browser/test_added_step_page.py": (1, "a row, which is a whole number"),
     "browser/test_live_run.py": (2, "extremes are samples"),
     "browser/test_mode_view.py": (4, "words, digits as they are shown, and a file that is read back"),
     "browser/test_pages.py": (2, "digits that are shown"),
@@ -33,6 +34,7 @@ ONE_NUMBER: dict[str, tuple[int, str]] = {
     "browser/test_scan_walk.py": (2, "ends of a section that stay as they are"),
     "browser/test_server.py": (1, "a file that is sent"),
     "browser/test_taken_away.py": (1, "a file that is read back"),
+    "browser/test_worker.py": (3, "the same reply, and the number of a process"),
     "charts/test_thinning.py": (1, "extremes are samples"),
     "cli/console/test_outputs.py": (1, "files that stay as they are"),
     "cli/design/test_plan.py": (1, "friction of the same row"),
@@ -91,6 +93,7 @@ ONE_NUMBER: dict[str, tuple[int, str]] = {
     "tasks/measure/test_measured_files.py": (3, "one answer, stored and read back"),
     "tasks/predict/test_new.py": (1, "entries of a file, written and read back"),
     "test_gallery.py": (2, "colours that stay as they are"),
+    "test_tiers.py": (2, "names of tests"),
     "test_wheel.py": (2, "files of one archive"),
     "validation/test_nptdms_whole_file.py": (1, "samples that are read by two programs"),
     "validation/test_salib_sobol.py": (1, "columns that are copied"),
