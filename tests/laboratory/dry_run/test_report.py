@@ -122,6 +122,15 @@ def test_the_moment_at_which_the_actuator_is_too_hot_lies_on_the_line_between_tw
     assert refusals_of(replace(found, heating=None), None) == ()
 
 
+def test_a_room_warmer_than_the_limit_is_too_hot_from_the_first_step_on() -> None:
+    points = (point(0.0, "1", lasts=0.0), point(0.0, "2", lasts=5.0), point(5.0, "", "end", lasts=0.0))
+    found = run(*points, of=protocol(temperature_maximum="20 degC"), heating=heating([0.0, 1.0], [0.0, 5.0]))
+    assert refusals_of(found, None) == (
+        "step 2: reaches 22 degC at the actuator, too hot after 0 s; limits.temperature_maximum of 20 degC ends the"
+        " test",
+    )
+
+
 @pytest.mark.parametrize(
     ("limit", "told"), [("1.1 N", False), ("1.2 N", True), ("1.5 N", True), ("1.62 N", False), ("2 N", False)]
 )
