@@ -70,7 +70,8 @@ def _beyond_limits(found: DryRun) -> Iterator[str]:
         if beyond.size:
             around = slice(max(beyond[0] - 1, 0), beyond[0] + 1)
             time = float(np.interp(limits.temperature_maximum, reached[around], found.heating.time[around]))
-            point = [each for each in found.points if each.setting.time < time and each.duration > 0][-1]
+            lasting = [each for each in found.points if each.duration > 0]
+            point = ([each for each in lasting if each.setting.time < time] or lasting[:1])[-1]
             hottest = f"{_celsius(float(reached.max()))} at the actuator, too hot after {format_si(time, 's')}"
             allowed = _celsius(limits.temperature_maximum)
             yield f"step {point.setting.step}: " + ending(hottest, "temperature_maximum", allowed)
