@@ -1,11 +1,23 @@
-"""Limits of a prediction: direction, soft bodies, lubricants and frequencies."""
+"""Limits of a prediction: direction, soft bodies, lubricants, frequencies and ranges; its interval; heat of a contact."""
 
 from dataclasses import replace
+from math import pi, sqrt
 from pathlib import Path
 
-from pytest import mark
+import numpy as np
+from pytest import approx, mark, raises
 
-from sonolube.prediction.applicability import NORMAL_VIBRATION, applicability
+from sonolube.errors import InvalidInput, MissingProperty
+from sonolube.prediction import interval, predict
+from sonolube.prediction.applicability import (
+    NORMAL_VIBRATION,
+    FrictionInterval,
+    applicability,
+    contact_heating,
+    extrapolation_caveats,
+    friction_interval,
+)
+from sonolube.prediction.inputs import rig_inputs
 from sonolube.rig import Rig, read_rig
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
@@ -73,3 +85,164 @@ def test_frequencies_beyond_the_tests_rest_on_one_scaling(frequency: float, is_s
     if is_said:
         assert "16 kHz to 22 kHz" in caveats[0]
         assert "v_r/(omega a)" in caveats[0]
+
+
+@mark.parametrize(("frequency", "is_said"), [(15.3e3, False), (15.2e3, True), (23.0e3, False), (23.2e3, True)])
+def test_a_frequency_counts_as_tested_up_to_a_twentieth_beyond_the_range(frequency: float, is_said: bool) -> None:
+    # 16 kHz / 1.05 = 15.24 kHz; 22 kHz * 1.05 = 23.1 kHz
+    rig = read_rig(RIGS / "poisson_steel_steel.toml").replace("drive.frequency", f"{frequency} Hz")
+    assert bool(applicability(rig).caveats) == is_said
+
+
+def test_no_frequency_is_judged_without_a_drive_or_by_coulombs_law_within_the_plane() -> None:
+    assert applicability(replace(read_rig(RIGS / "welder_round.toml"), drive=None)).caveats == ()
+    within_plane = applicability(read_rig(RIGS / "vibrating_base.toml"))  # 3 kHz
+    assert within_plane.caveats
+    assert not any("the frequency of" in each for each in within_plane.caveats)
+
+
+@mark.parametrize(("modulus", "is_refused"), [("9.9 GPa", True), ("10.1 GPa", False)])
+def test_unnamed_bodies_are_soft_below_an_effective_modulus_of_10_gpa(modulus: str, is_refused: bool) -> None:
+    rig = read_rig(RIGS / "tribometer.toml").replace("contact.pair.effective_modulus", modulus)
+    refusal = applicability(rig).refusal
+    assert (refusal is not None) == is_refused
+    assert not is_refused or "an effective modulus of 9.9 GPa is that of a soft body" in (refusal or "")
+    one_named = replace(rig, pin_material="m50")
+    assert (applicability(one_named).refusal is not None) == is_refused
+    both_named = replace(one_named, disc_material="alumina")
+    assert applicability(both_named).refusal is None
+
+
+def test_two_polymers_are_named_together_and_a_model_of_soft_bodies_by_its_name() -> None:
+    assert "are soft" in (applicability(rig_of("ptfe", "uhmwpe")).refusal or "")
+    cutter = applicability(read_rig(RIGS / "cutter_head.toml").replace("friction.model", "squeeze_film")).refusal or ""
+    assert "friction model squeeze_film is of a soft or floating contact" in cutter
+
+
+def tribometer(*changes: str) -> Rig:
+    return read_rig(RIGS / "tribometer.toml", changes=list(changes))
+
+
+@mark.parametrize(
+    ("change", "said"),
+    [
+        # tested are 3.5 to 265.9 mm/s, a twentieth more either way counting as tested: 3.333 and 279.2 mm/s;
+        # and 59.6 to 109.2 GPa: 56.76 and 114.6 GPa
+        ("sliding.sliding_speed=3.34mm/s", ""),
+        ("sliding.sliding_speed=3.32mm/s", "sliding speed 3.32 mm/s (3.5 mm/s to 266 mm/s)"),
+        ("sliding.sliding_speed=279mm/s", ""),
+        ("sliding.sliding_speed=280mm/s", "sliding speed 280 mm/s (3.5 mm/s to 266 mm/s)"),
+        ("contact.pair.effective_modulus=57GPa", ""),
+        ("contact.pair.effective_modulus=56GPa", "effective modulus 56 GPa (59.6 GPa to 109 GPa)"),
+        ("contact.pair.effective_modulus=114GPa", ""),
+        ("contact.pair.effective_modulus=115GPa", "effective modulus 115 GPa (59.6 GPa to 109 GPa)"),
+    ],
+)
+def test_a_condition_counts_as_tested_up_to_a_twentieth_beyond_its_range(change: str, said: str) -> None:
+    rig = tribometer(change)
+    found = extrapolation_caveats(rig, rig_inputs(rig))
+    beginning = "outside the range of the published tests, so that the prediction extrapolates: "
+    assert found == ((beginning + said,) if said else ())
+
+
+@mark.parametrize(
+    ("amplitude", "said"),
+    [
+        # 0.46 to 11.46 um, with the twentieth 0.4381 and 12.03 um
+        (0.44e-6, ""),
+        (0.436e-6, "vibration amplitude 436 nm (460 nm to 11.5 um)"),
+        (12.0e-6, ""),
+        (12.1e-6, "vibration amplitude 12.1 um (460 nm to 11.5 um)"),
+    ],
+)
+def test_an_amplitude_counts_as_tested_up_to_a_twentieth_beyond_its_range(amplitude: float, said: str) -> None:
+    inputs = rig_inputs(tribometer())
+    inputs = replace(inputs, amplitude=replace(inputs.amplitude, value=amplitude))
+    found = extrapolation_caveats(tribometer(), inputs)
+    assert [each.rpartition(": ")[2] for each in found] == ([said] if said else [])
+
+
+def test_two_conditions_beyond_the_tests_are_named_together() -> None:
+    rig = tribometer("sliding.sliding_speed=1m/s", "contact.pair.effective_modulus=12GPa")
+    (found,) = extrapolation_caveats(rig, rig_inputs(rig))
+    assert "sliding speed 1 m/s (3.5 mm/s to 266 mm/s); effective modulus 12 GPa" in found
+
+
+def test_a_watt_on_a_slow_circular_contact_heats_it_as_two_half_spaces_in_parallel() -> None:
+    # uniform flux on a circle of radius a at rest: mean rise 8 Q/(3 pi^2 a k), Q shared so that both means are equal:
+    # 8/(3 pi^2 a (k_1 + k_2)) for 1 W; A = 2.25 mm2, a = sqrt(A/pi) = 0.8463 mm; k of 316 is 16.3, of 2024 121 W/(m K)
+    rig = tribometer("sliding.sliding_speed=1um/s")
+    radius = sqrt(2.25e-6 / pi)
+    expected = 8 / (3 * pi**2 * radius * (16.3 + 121.0))
+    assert contact_heating(rig, "stainless_steel_316", "aluminium_2024") == approx(expected, rel=1e-3)
+
+
+def test_the_pin_is_the_body_whose_contact_stays_so_that_a_moving_insulator_helps_more() -> None:
+    # at speed the mean rise of the moving body falls as 1/sqrt(Pe), that of the pin stays: a disc of low diffusivity
+    # takes heat where a pin of the same does not
+    fast = tribometer("sliding.sliding_speed=100m/s")
+    steel_pin, steel_disc = (
+        contact_heating(fast, *each)
+        for each in (("stainless_steel_316", "aluminium_2024"), ("aluminium_2024", "stainless_steel_316"))
+    )
+    assert isinstance(steel_pin, float)
+    assert isinstance(steel_disc, float)
+    # half-space under a fast circle of uniform flux: mean rise c q a/k/sqrt(Pe), Pe = v a/kappa (c of Tian and Kennedy
+    # for the ellipse, 0.94 within 10 %); with the stationary body in parallel
+    for rise, (pin, disc) in (
+        (steel_pin, ((16.3, 8000, 500), (121.0, 2780, 875))),
+        (steel_disc, ((121.0, 2780, 875), (16.3, 8000, 500))),
+    ):
+        radius, speed = sqrt(2.25e-6 / pi), 100.0
+        peclet = speed * radius / (disc[0] / (disc[1] * disc[2]))
+        still = 8 / (3 * pi) * radius / pin[0]
+        moving = 0.94 * radius / disc[0] / sqrt(peclet)
+        assert rise == approx(1 / 2.25e-6 / (1 / still + 1 / moving), rel=0.15)
+
+
+def test_heat_needs_both_materials_with_thermal_properties_and_says_which_lack() -> None:
+    assert contact_heating(tribometer(), None, None) == "name the materials of pin and disc"
+    for pin, disc in (("m50", None), (None, "m50")):
+        with raises(InvalidInput, match="needs both materials; give pin and disc, or neither"):
+            contact_heating(tribometer(), pin, disc)
+    named = replace(tribometer(), pin_material="stainless_steel_316", disc_material="aluminium_2024")
+    both = contact_heating(tribometer(), "stainless_steel_316", "aluminium_2024")
+    assert contact_heating(named, None, None) == approx(both)
+    assert contact_heating(named, None, "aluminium_2024") == approx(both)
+    other = contact_heating(tribometer(), "aluminium_2024", "stainless_steel_316")
+    assert contact_heating(named, "aluminium_2024", "stainless_steel_316") == approx(other)
+    unknown = replace(named, pin_material="steel_52100")
+    text = contact_heating(unknown, None, None)
+    assert isinstance(text, str)
+    assert "52100" in text
+    with raises(MissingProperty):
+        contact_heating(tribometer(), "steel_52100", "aluminium_2024")
+
+
+def test_an_interval_is_told_in_words_or_why_there_is_none() -> None:
+    assert FrictionInterval(low=0.123, high=0.456).text == "0.12 to 0.46 (80 %, `sonolube predict`)"
+    assert FrictionInterval(reason="felt is soft").text == "not predicted: felt is soft"
+    assert FrictionInterval(high=0.5, reason="one end").text == "not predicted: one end"
+    assert FrictionInterval(low=0.5, reason="one end").text == "not predicted: one end"
+
+
+def test_the_interval_beside_friction_is_that_of_predict_along_the_normal() -> None:
+    found = friction_interval(tribometer())
+    assert (found.low, found.high) == approx(interval(predict(tribometer()), "friction_ratio"))
+    assert found.low is not None
+    assert found.high is not None
+    draws = predict(tribometer())["friction_ratio"].to_numpy()
+    assert np.mean(draws < found.low) == approx(0.1, abs=2e-3)
+    assert np.mean(draws > found.high) == approx(0.1, abs=2e-3)
+
+
+def test_rigs_without_a_prediction_have_the_reason_in_place_of_an_interval() -> None:
+    soft = friction_interval(read_rig(RIGS / "cutter_head.toml"))
+    assert (soft.low, soft.high) == (None, None)
+    assert "soft_layer" in soft.reason
+    oiled = friction_interval(replace(rig_of("brass_c36000"), friction_coefficient=0.1))
+    assert oiled.low is None
+    assert "the contact counts as lubricated" in oiled.reason
+    still = friction_interval(replace(tribometer(), sliding_speed=0.0))
+    assert still.low is None
+    assert "needs a sliding speed above 0" in still.reason

@@ -1,8 +1,11 @@
 """Calibration on the published rigs, each left out in turn, and the scores against closed forms."""
 
+from dataclasses import replace
+
 import numpy as np
 from pytest import approx
 from scipy.stats import norm
+from tests.prediction.linear_rigs import LINEAR, conditions, measured_rig
 
 from sonolube.prediction.calibration import (
     BLIND,
@@ -13,8 +16,11 @@ from sonolube.prediction.calibration import (
     UnseenPrediction,
     blind_calibration,
     calibrations,
+    mean_ratio_calibration,
     plane_calibration,
+    population_calibration,
 )
+from sonolube.prediction.evidence import published_rigs
 from sonolube.prediction.figures import blind_caption, plane_caption
 from sonolube.prediction.hierarchy import (
     PROBABILITIES,
@@ -23,6 +29,7 @@ from sonolube.prediction.hierarchy import (
     continuous_ranked_probability_score,
     interval_score,
 )
+from sonolube.prediction.posterior import Population
 
 
 def by_name() -> dict[str, Calibration]:
@@ -95,3 +102,80 @@ def test_the_central_interval_of_uniform_draws_leaves_equal_tails() -> None:
 def test_the_binomial_interval_of_no_success_in_n_is_that_of_clopper_and_pearson() -> None:
     low, high = binomial_interval(0, 10)
     assert (low, high) == approx((0.0, 1 - 0.025 ** (1 / 10)))
+
+
+def scored() -> Calibration:
+    """Three predictions with even draws of widths 1, 2 and 4 about 0.5: the first two hold what was measured."""
+    draws = [0.5 + width * (np.arange(10_001) / 10_000 - 0.5) for width in (1.0, 2.0, 4.0)]
+    return Calibration(
+        name="by hand",
+        predictions=tuple(
+            UnseenPrediction(rig=rig, friction_ratio=measured, uncertainty=0.05, draws=each)
+            for rig, measured, each in zip("aab", (0.6, 0.1, 2.2), draws, strict=True)
+        ),
+    )
+
+
+def test_coverage_widths_and_scores_are_those_of_even_draws() -> None:
+    found = scored()
+    # central 80 %: 0.1 to 0.9, -0.3 to 1.3, -1.1 to 2.1; central 50 %: 0.25 to 0.75, 0 to 1, -0.5 to 1.5
+    assert found.covered(0.8) == 2
+    assert found.covered(0.5) == 2
+    assert found.covered(0.1) == 0  # 0.45 to 0.55
+    assert found.covered(0.95) == 3  # -1.4 to 2.4
+    assert found.coverage_interval(0.8) == approx(binomial_interval(2, 3))
+    # three of three at 0.95, and none of three at 0.1, are the most probable outcomes
+    assert found.p_value(0.95) == approx(1.0)
+    assert found.p_value(0.1) == approx(1.0)
+    assert found.median_width == approx(1.6)
+    assert found.interval_score == approx((0.8 + 1.6 + 3.2 + 10 * 0.1) / 3)
+    # of even draws of the width w about m: w (1/12 + z^2) within, z from the middle in widths
+    assert found.scores[:2] == approx([1 / 12 + 0.01, 2 * (1 / 12 + 0.04)], rel=1e-3)
+    assert found.crps == approx(float(np.mean(found.scores)))
+
+
+def test_the_probability_of_a_coverage_is_that_of_the_binomial_distribution() -> None:
+    # 0 of 3 within 80 %: 0.2^3, and no other outcome is as improbable
+    off = Calibration(
+        name="off", predictions=tuple(replace(one, friction_ratio=9.0) for one in scored().predictions)
+    )
+    assert off.covered(0.8) == 0
+    assert off.p_value(0.8) == approx(0.008)
+
+
+def test_the_mean_ratio_is_predicted_with_the_scatter_of_the_tests_on_other_rigs() -> None:
+    ratios = {rig.name: rig.friction_ratio for rig in published_rigs()}
+    found = mean_ratio_calibration()
+    assert [one.rig for one in found.predictions] == [name for name, values in ratios.items() for _ in values]
+    last = found.predictions[-1]  # of set H
+    others = np.concatenate([values for name, values in ratios.items() if name != "H"])
+    assert last.friction_ratio == approx(1.0)
+    assert last.draws.mean() == approx(others.mean(), abs=0.02)
+    assert last.draws.std() == approx(np.hypot(others.std(ddof=1), 0.05), rel=0.05)
+    grouped = mean_ratio_calibration((("A", "H"), ("B", "C", "D", "E", "F", "G"))).predictions
+    seen = np.concatenate([values for name, values in ratios.items() if name not in ("A", "H")])
+    assert [one.rig for one in grouped] == [one.rig for one in found.predictions]
+    assert grouped[-1].draws.mean() == approx(seen.mean(), abs=0.02)
+
+
+def test_a_population_predicts_each_rig_by_the_others_alone_and_each_group_by_the_other_groups() -> None:
+    # three rigs of one test each, ratios equal to the logarithm of their parameter, hardly any prior but the tests
+    rigs = [
+        measured_rig([ratio], conditions([2e-6], [0.02]), name=name)
+        for name, ratio in (("a", 0.1), ("b", 0.5), ("c", 0.6))
+    ]
+    rows = np.zeros((3, 6)) + np.array([0.0, 0.0, -6.0, 0.0, -6.0, 0.0])
+    rows[:, 0] = [0.1, 0.5, 0.6]
+    sure = Population(closure=LINEAR, draws=rows, log_likelihoods=np.where(np.eye(3) > 0, 0.0, -60.0))
+    found = population_calibration("sure", sure, rigs)
+    assert [one.rig for one in found.predictions] == ["a", "b", "c"]
+    assert found.name == "sure"
+    # left out a: draws with the parameters of b and of c, as likely; noise of 0.05
+    first = found.predictions[0]
+    assert first.friction_ratio == approx(0.1)
+    assert 0.45 < first.draws.mean() < 0.65
+    grouped = population_calibration("grouped", sure, rigs, groups=(("a", "b"), ("c",)))
+    assert [one.rig for one in grouped.predictions] == ["a", "b", "c"]
+    for one in grouped.predictions[:2]:
+        assert one.draws.mean() == approx(0.6, abs=0.01)
+        assert one.draws.std() == approx(0.05, rel=0.05)

@@ -148,3 +148,49 @@ def test_own_tests_win_where_they_contradict_the_weight() -> None:
 def test_what_cannot_be_is_refused(arguments: dict[str, Any], refusal: type[Exception], message: str) -> None:
     with raises(refusal, match=message):
         one_draw().wear_rate_ratios(10, **arguments)
+
+
+def test_the_weight_is_one_from_a_friction_ratio_of_0_707_down_and_below_one_above() -> None:
+    # D Table 2.5: the smallest reduction of the published wear tests is 29.3 %
+    assert np.all(vibration_weight(friction_ratio=np.full(100, 0.706)) == 1)
+    above = vibration_weight(friction_ratio=np.full(100, 0.709))
+    assert np.all((above < 1) & (above > 0.9))
+
+
+def test_tests_far_from_the_population_move_it_near_their_vibration_and_less_at_others() -> None:
+    # by hand: off = ln 0.05 - w_t ln 0.7, beyond twice the deviation of the mean of two tests; the excess enters as a
+    # deviation of its own, correlated over weights by exp(-(w - w_t)^2/(2 0.5^2))
+    tests, tested, weight = np.array([0.05, 0.05]), 0.5, 0.9
+    off = np.log(0.05) - tested * np.log(0.7)
+    variance = tested**2 * 0.25 + 0.01 / 2
+    departure = (off / 2) ** 2 - variance
+    assert departure > 0
+    covariance = weight * tested * 0.25 + departure * np.exp(-0.5 * (0.4 / 0.5) ** 2)
+    gain = covariance / (variance + departure)
+    expected = weight * np.log(0.7) + gain * off
+    left = weight**2 * 0.25 + departure - gain * covariance
+    logs = np.log(one_draw().wear_rate_ratios(20000, measured=tests, measured_weight=tested, weight=weight))
+    assert logs.mean() == approx(expected, abs=0.02)
+    assert logs.std() == approx(np.sqrt(left), rel=0.02)
+
+
+def test_many_tests_of_a_published_pair_leave_the_difference_between_rigs() -> None:
+    # six tests: b = 6 0.25/(6 0.25 + 0.01 + 0.02^2), mean of the logarithms of Tables 2.5 and 2.7
+    pair = {each.name: each for each in published_wear()}["stainless steel on aluminium"]
+    assert pair.uncertainty == approx(0.02)
+    b = 1.5 / (1.5 + 0.01 + 0.02**2)
+    mean = np.log(0.7) + b * (np.log(pair.wear_rate_ratio).mean() - np.log(0.7))
+    logs = np.log(one_draw().wear_rate_ratios(20000, pair=pair.name))
+    assert logs.mean() == approx(mean, abs=0.01)
+    assert logs.std() == approx(np.sqrt(0.25 * (1 - b) + 0.09), rel=0.02)
+
+
+def test_the_prior_of_wear_is_about_a_ratio_of_0_7_within_a_factor_of_two() -> None:
+    pairs = (WearPair(name="pair", wear_rate_ratio=np.array([0.5]), uncertainty=0.3, source=""),)
+    off = np.array(WEAR_PRIOR[0]) + np.array([[0.7, 0, 0], [0, 1.4, 0], [0, 0, -0.7]])
+    assert log_wear_posterior(off, ()) == approx([-0.5, -2.0, -0.5])
+    assert np.exp(WEAR_PRIOR[0]) == approx([0.7, 0.5, 0.1])
+    # one test: normal about M with T^2 + s^2 + u^2
+    row = np.log([[0.7, 0.4, 0.15]])
+    closed = norm(np.log(0.7), np.sqrt(0.4**2 + 0.15**2 + 0.3**2)).logpdf(np.log(0.5)) + 0.5 * np.log(2 * np.pi)
+    assert (log_wear_posterior(row, pairs) - log_wear_posterior(row, ())) == approx([closed])

@@ -1,5 +1,6 @@
 """Wear of a rig in words: its published pair, the body that wears, and what is not known."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -108,3 +109,64 @@ def test_titanium_is_said_to_have_worn_no_less() -> None:
 def test_the_change_is_said_by_its_interval(draws: Floats, beginning: str) -> None:
     # 80 % of a lognormal lie within exp(+- 1.2816 s) of its median
     assert wear_statement(draws, pair=None, worn_body=SOMEBODY).startswith(beginning)
+
+
+def reduction(low: float, high: float) -> Floats:
+    """Draws of a wear rate ratio, 80 % of whose reductions lie evenly between two."""
+    middle, half = (low + high) / 2, (high - low) / 2 / 0.8
+    return 1 - np.linspace(middle - half, middle + half, 4001)
+
+
+@mark.parametrize(
+    ("low", "high", "sentence"),
+    [
+        (-0.019, 0.019, "Wear does not change: the vibration has no effect on the contact."),
+        (-0.019, 0.021, "Wear falls by 0 to 2 % (80 %)."),
+        (-0.019, 0.5, "Wear falls by 0 to 50 % (80 %)."),
+        (0.12, 0.5, "Wear falls by 12 to 50 % (80 %)."),
+        (-0.021, 0.5, "Wear goes from 2 % more to 50 % less (80 %)."),
+        (-0.099, 0.5, "Wear goes from 10 % more to 50 % less (80 %)."),
+        (-0.5, 0.099, "Wear goes from 50 % more to 10 % less (80 %)."),
+        (-0.5, 0.021, "Wear goes from 50 % more to 2 % less (80 %)."),
+        (-0.5, 0.019, "Wear rises by 0 to 50 % (80 %)."),
+        (-0.5, -0.12, "Wear rises by 12 to 50 % (80 %)."),
+    ],
+)
+def test_a_fiftieth_is_no_change_of_wear_and_a_tenth_a_large_one(low: float, high: float, sentence: str) -> None:
+    assert wear_statement(reduction(low, high), pair=None, worn_body=SOMEBODY) == f"{sentence} Brass wears."
+
+
+def test_wear_that_may_rise_or_fall_by_more_than_a_tenth_is_not_known() -> None:
+    found = wear_statement(reduction(-0.101, 0.101), pair=None, worn_body=SOMEBODY)
+    assert found.startswith(
+        "Whether vibration reduces wear is not known, between 10 % more and 10 % less (80 %); measure wear with and"
+        " without vibration. Of 6 published pairs of materials wear fell by 45 to 73 % in 4, and not in 2."
+    )
+
+
+def with_hardness(softer: str, harder: str) -> Rig:
+    rig = rig_of("stainless_steel_304", "m50").replace("contact.softer.hardness", softer)
+    return rig.replace("contact.harder.hardness", harder)
+
+
+def test_hardnesses_within_a_quarter_are_a_near_tie() -> None:
+    tie = worn_body(with_hardness("2 GPa", "2.49 GPa"))
+    assert tie.names == ("stainless_steel_304", "m50")
+    assert tie.sentence.startswith("Both bodies may wear: ")
+    assert tie.sentence.endswith("differ by 25 % in hardness, 2 GPa against 2.49 GPa.")
+    assert worn_body(with_hardness("2 GPa", "2.51 GPa")).names == ("stainless_steel_304",)
+    other = worn_body(with_hardness("3 GPa", "2 GPa"))
+    assert other.names == ("m50",)
+    assert "2 GPa against 3 GPa of Stainless steel" in other.sentence
+
+
+def test_an_estimated_hardness_is_said_and_an_unknown_one_leaves_the_worn_body_open() -> None:
+    # bronze C51000 has no hardness in the catalogue but a yield strength; the coating has neither
+    estimated = worn_body(rig_of("bronze_c51000", "m50").replace("contact.softer.yield_strength", "500 MPa"))
+    assert "about 1.5 GPa (three times its yield strength) against" in estimated.sentence
+    rig = replace(rig_of("m50", "m50"), pin_material="pzt4", disc_material="alumina")
+    for changed in (rig, replace(rig, pin_material="alumina", disc_material="pzt4")):
+        unknown = worn_body(changed)
+        assert unknown.names == ()
+        assert unknown.sentence.startswith("Which body wears is not known: no source states the hardness of ")
+        assert "PZT" in unknown.sentence
