@@ -129,7 +129,8 @@ def test_the_outline_follows_arcs_of_either_bulge_about_their_centres() -> None:
 
 
 # A group code and its value a line, by the manual of Release 12; the pattern of CENTER is that of acad.lin in inches,
-# 1.25, -0.25, 0.25, -0.25, times 25.4; ten digits of 8.12345678913 mm. The profile ends at 30 mm, so that its centre line reaches 1.5 mm beyond.
+# 1.25, -0.25, 0.25, -0.25, times 25.4; ten digits of 8.12345678913 mm.
+# The profile ends at 30 mm, so that its centre line reaches 1.5 mm beyond.
 DXF = """
 999 lengths in mm|0 SECTION|2 HEADER|9 $ACADVER|1 AC1009|0 ENDSEC
 0 SECTION|2 TABLES|0 TABLE|2 LTYPE|70 2
