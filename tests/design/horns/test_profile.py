@@ -314,6 +314,20 @@ def test_two_stations_have_one_chain_of_lengths_and_a_block_its_thickness() -> N
     assert dots == [approx((LEFT + x, middle + y)) for x, y in ((0, 20), (90, 10), (100, 10))]
 
 
+def test_a_part_of_half_the_size_is_the_same_drawing_at_two_to_one() -> None:
+    half = HornProfile(
+        vertices=tuple((x / 2, y / 2, bulge) for x, y, bulge in STEPPED.vertices),
+        stations=tuple(place / 2 for place in STEPPED.stations),
+        widths=tuple((place / 2, width / 2) for place, width in STEPPED.widths),
+        fillets=tuple((x / 2, y / 2, radius / 2) for x, y, radius in STEPPED.fillets),
+    )
+    large, small = sheet(STEPPED, "a note"), sheet(half, "a note")
+    assert "scale 2:1 at a width of 174 mm" in {each.get_text() for each in small.texts}
+    assert np.asarray(small.patches[0].get_path().vertices) == approx(np.asarray(large.patches[0].get_path().vertices))
+    for one, other in zip(large.lines, small.lines, strict=True):
+        assert np.array(other.get_data(), dtype=float) == approx(np.array(one.get_data(), dtype=float), abs=1e-2)
+
+
 def gaps(places: Sequence[float], widths: Sequence[float]) -> np.ndarray:
     """Space between neighbours."""
     return np.diff(places) - (np.array(widths[1:]) + np.array(widths[:-1])) / 2
@@ -322,6 +336,7 @@ def gaps(places: Sequence[float], widths: Sequence[float]) -> np.ndarray:
 def test_texts_that_have_room_stay_and_those_that_have_none_move_apart_evenly() -> None:
     assert _spread([20.0, 60.0, 100.0], [10.0, 12.0, 8.0]) == [20.0, 60.0, 100.0]
     assert _spread([100.0], [10.0]) == [100.0]
+    assert _spread([3.0], [10.0]) == [5.0]  # not beyond the left end of the sheet
     # two texts of 10 mm and 14 mm, 2 mm apart, need 12: half of the missing 10 mm each
     assert _spread([50.0, 52.0], [10.0, 14.0]) == approx([45.0, 57.0])
     # three of 10, 20 and 6 mm at one place need 15 and 13 mm: the last would move by 28, so that all go back by 14
