@@ -1,14 +1,19 @@
-"""What a rig does where harmonic balance alone cannot say: marched as its drive is switched on, and reported."""
+"""What a rig does where harmonic balance alone cannot say: marched as its drive is switched on, cut, and reported."""
 
 import tomllib
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput, OutsideRange
+from sonolube.models.actuator.drive import Drive
+from sonolube.models.contact import ContactMotion
 from sonolube.models.dynamics import (
     Status,
     contact_motion as vibration,
@@ -21,7 +26,7 @@ from sonolube.models.friction import FRICTION_MODELS
 from sonolube.rig import Simulation, read_rig, rig_from, simulate, start_up
 from sonolube.rig.driven_rig import DriveVoltage, driven_rig, waveform_of
 from sonolube.rig.resolved_rig import resolved_rig
-from sonolube.rig.vibration import steady_vibration
+from sonolube.rig.vibration import _from_rest, _same, _segments, contact_loss_fraction, steady_vibration
 
 TRIBOMETER = Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml"
 COMPUTED = "vibration.amplitude_source=computed"
@@ -187,3 +192,76 @@ def test_a_voltage_beyond_what_the_contact_is_defined_for_is_refused_before_any_
         OutsideRange, match=r"drive.voltage_peak_to_peak 1 MV would move the tip by 89\.\d mm .* at most 14 kV"
     ):
         steady_vibration(rig)
+
+
+RIG: Any = SimpleNamespace(normal_load=3.0)
+
+
+def marched(steps: int, periods: int, beat: float) -> Any:
+    return SimpleNamespace(
+        steps_per_period=steps, periods=periods, attractor=SimpleNamespace(beat_frequency=beat), amplitudes=np.ones(3)
+    )
+
+
+def segments(x: np.ndarray, attained: Any, frequency: float) -> list[ContactMotion]:
+    return _segments(RIG, x, 10 + x, attained, frequency)
+
+
+def test_a_beating_motion_is_cut_at_its_widest_gaps_one_beat_apart() -> None:
+    # 20 kHz in 32 steps a period, a beat of 1 kHz: 640 steps; the widest gaps lie at 100, 740, 1380, ...
+    whole = 32 * 200
+    n = np.arange(whole + 1)
+    x = np.cos(2 * np.pi * (n - 100) / 640)
+    found = segments(x, marched(32, 200, 1000.0), 20e3)
+    assert len(found) == 9  # cuts from 100 to 5860, the last that leaves half a beat
+    for each in found:
+        assert each.frequency == approx(1000.0)
+        assert each.displacement.size == 640
+        assert each.displacement.max() == approx(1.0)
+        assert each.normal_load == 3.0
+    assert found[0].normal_force == approx(10 + x[100:740])
+
+
+def test_a_segment_is_made_periodic_about_its_middle() -> None:
+    # a slope of 1 from gap to gap is taken away, half of it added at the start
+    whole = 32 * 200
+    n = np.arange(whole + 1)
+    x = np.cos(2 * np.pi * (n - 100) / 640) + n / 640 * 0.1
+    found = segments(x, marched(32, 200, 1000.0), 20e3)
+    first = found[1]
+    assert first.displacement[0] == approx(first.displacement[-1], abs=2e-3)
+    assert first.displacement.mean() == approx(x[first_cut(x) + 640 : first_cut(x) + 1280].mean(), abs=2e-3)
+
+
+def first_cut(x: np.ndarray) -> int:
+    return int(np.argmax(x[:640]))
+
+
+@pytest.mark.parametrize("beat", [0.0, 16_000.0, 10.0])
+def test_a_beat_that_is_none_too_fast_or_too_slow_gives_a_sixteenth_of_the_motion(beat: float) -> None:
+    # 4 periods at least, a third of the motion at most; a sixteenth of 6400 steps is 400
+    n = np.arange(6401)
+    x = np.cos(2 * np.pi * (n - 7) / 400)
+    found = segments(x, marched(32, 200, beat), 20e3)
+    assert {each.displacement.size for each in found} == {400}
+    assert found[0].frequency == approx(20e3 * 32 / 400)
+
+
+def test_contact_is_lost_below_a_hundredth_of_the_load() -> None:
+    force = np.array([0.0, 0.0199, 0.0201, 2.0, 6.0])
+    motion = ContactMotion(displacement=np.zeros(10), normal_force=np.tile(force, 2), frequency=1.0, normal_load=2.0)
+    assert contact_loss_fraction(motion) == approx(2 / 5)
+
+
+@pytest.mark.parametrize(("other", "same"), [(1.0099, True), (0.9901, True), (1.0101, False), (0.9899, False)])
+def test_two_vibrations_are_the_same_within_a_percent_of_the_amplitude(other: float, same: bool) -> None:
+    states: Any = SimpleNamespace(vibration_amplitude=2e-6)
+    attained: Any = SimpleNamespace(amplitudes=np.array([2e-6 * other, 9.0]))
+    assert _same(states, attained) is same
+
+
+def test_a_march_says_how_its_drive_was_switched_on() -> None:
+    drive = Drive(frequency=20e3, voltage_peak_to_peak=10.0)
+    assert _from_rest(drive) == "switched on at once,"
+    slow = replace(drive, ramp_duration=0.2, ramp_shape="cosine")
+    assert _from_rest(slow) == "with the voltage brought up by a cosine ramp of 200 ms,"

@@ -45,8 +45,9 @@ def adjust_length(geometry: Geometry, *, axis: str, length: float) -> Geometry:
         ends = [face for face in shape.faces if face.name == f"+{axis}"]
         if not ends:
             raise InvalidInput(f"{name} has no flat end face at its greatest {axis} to be extended; shorten it instead")
+        along = occ.gp_Vec(*(change if k == direction else 0.0 for k in range(3)))  # not by the face's own normal
         for face in ends:
-            shape = shape + face.Extrude(change)
+            shape = shape + face.Extrude(along)
         return single_body(shape, name)
     corner, opposite = ([_coordinate(bound, k) for k in range(3)] for bound in shape.bounding_box)
     corner, opposite = [value - 1.0 for value in corner], [value + 1.0 for value in opposite]
