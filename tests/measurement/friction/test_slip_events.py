@@ -1,5 +1,7 @@
 """Chains of slips by hand, spectra of known noise, and the matched filter against correlation in time."""
 
+import itertools
+
 import numpy as np
 import pytest
 from pytest import approx
@@ -24,15 +26,8 @@ def peaks(size: int, heights: dict[int, float]) -> np.ndarray:
 
 
 def test_a_local_maximum_exceeds_what_follows_and_is_not_below_what_precedes() -> None:
-    #                                   0    1    2    3    4    5    6    7
-    assert _maxima(np.array([2.0, 1.0, 3.0, 3.0, 1.0, 4.0, 5.0, 6.0])).tolist() == [
-        False,
-        False,
-        True,
-        False,
-        False,
-        False,
-    ]
+    response = np.array([2.0, 1.0, 3.0, 3.0, 1.0, 4.0, 5.0, 6.0])
+    assert _maxima(response).tolist() == [False, False, True, False, False, False]  # of the inner six
 
 
 def test_a_chain_links_maxima_six_tenths_to_sixteen_tenths_of_a_period_apart() -> None:
@@ -60,9 +55,9 @@ def test_a_slip_counts_up_to_eight_standard_deviations_and_from_one_and_a_half()
 
 
 def test_further_bursts_are_chains_that_would_be_detected_alone() -> None:
-    strong = {k: 5.0 for k in (20, 30, 40, 50)}  # 4 (12.5 - 2) = 42
-    later = {k: 4.5 for k in (120, 130, 140, 150)}  # 4 (10.125 - 2) = 32.5
-    weak = {k: 3.5 for k in (220, 230, 240, 250)}  # 4 (6.125 - 2) = 16.5, below 20
+    strong = dict.fromkeys((20, 30, 40, 50), 5.0)  # 4 (12.5 - 2) = 42
+    later = dict.fromkeys((120, 130, 140, 150), 4.5)  # 4 (10.125 - 2) = 32.5
+    weak = dict.fromkeys((220, 230, 240, 250), 3.5)  # 4 (6.125 - 2) = 16.5, below 20
     response = peaks(300, {**later, **strong, **weak, 160: 2.1})  # the last below half of the median
     first = _best_chain(response, 10, 2.0)[1]
     found = _bursts(response, 10, 2.0, first, 3)
@@ -84,7 +79,7 @@ def test_the_periods_are_spaced_by_root_two_from_the_shortest_resolved_to_a_quar
 def test_a_sawtooth_explains_its_own_sum_of_squares(gaps: tuple[int, ...]) -> None:
     burst = 5 + np.cumsum([0, *gaps])
     signal = np.full(80, 7.0)
-    for first, last in zip(burst[:-1], burst[1:], strict=True):
+    for first, last in itertools.pairwise(burst):
         signal[first:last] = 0.3 * ((np.arange(last - first) + 0.5) / (last - first) - 0.5)
     # sum of ((i + 1/2)/n - 1/2)^2 over i is (n - 1/n)/12
     power = 0.09 * sum((n - 1 / n) / 12 for n in gaps)
