@@ -101,6 +101,6 @@ def test_a_loop_with_a_missing_force_has_the_work_of_the_rest_and_its_fraction()
     # a cycle of 4 s, of which 1 s about the missing sample is unknown; the speed is 1 m/s but for the linear passage
     # through zero over half a second at each reversal
     assert loops.measured_fraction == approx([0.75])
-    # from 3.75: to 4.0 rising (0.125 m), 1 s missing, 5.0 to 5.5, 5.5 to 6 through zero between samples (1, -1: 0.5 m by
-    # the rule), 6 to 7.5, 7.5 to 7.75 (0.125 m)
+    # from 3.75: to 4.0 rising (0.125 m), 1 s missing, 5.0 to 5.5, 5.5 to 6 through zero (1 and -1: 0.5 m by the rule),
+    # 6 to 7.5, and 7.5 to 7.75 (0.125 m)
     assert loops.sliding_distance == approx([0.125 + 0.5 + 0.5 + 1.5 + 0.125])
