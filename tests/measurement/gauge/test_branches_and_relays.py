@@ -31,7 +31,7 @@ def test_a_reversal_counts_beyond_a_fiftieth_of_the_range() -> None:
     # up to 100, from which on down: 1.0 and 61 are not 2 back; up again from the last 30 on
     rising = [True] * 4 + [False] * 7 + [True] * 2
     assert loading_mask(x).tolist() == rising
-    assert loading_mask(-x).tolist() == [True, *[not up for up in rising[1:]]]
+    assert loading_mask(-x).tolist() == [not up for up in rising]  # falling from its first sample on
     small = np.array([0.0, 100, 98.1, 97.9])
     assert loading_mask(small).tolist() == [True, False, False, False]  # from its extremum on
     assert loading_mask(small[:3]).tolist() == [True, True, True]
