@@ -115,3 +115,82 @@ def test_too_few_or_unsorted_pulses_are_refused(time: list[float], magnets: int,
 def test_a_constant_probe_signal_is_refused() -> None:
     with raises(InvalidInput, match="does not vary"):
         hall_pulse_times(time=np.arange(10.0), magnetic_flux_density=np.ones(10))
+
+
+def test_the_vertex_of_a_parabola_through_uneven_samples_is_exact() -> None:
+    t = np.array([0.0, 1.0, 1.5, 2.5, 3.0, 5.0, 6.0, 6.5])
+    b = np.zeros(8)
+    b[1:4] = 5 - (t[1:4] - 1.7) ** 2  # highest at 1.5
+    b[4:7] = 40 - 3 * (t[4:7] - 4.6) ** 2  # highest at 5
+    assert hall_pulse_times(time=t, magnetic_flux_density=b, prominence=0.01) == approx([1.7, 4.6])
+
+
+def test_a_reading_with_missing_values_or_without_a_pulse_is_read_or_refused() -> None:
+    t = np.arange(0, 3, 0.0025)
+    b = bells(t, np.array([0.5, 1.5, 2.5]), np.ones(3))
+    b[10:20] = np.nan
+    assert hall_pulse_times(time=t, magnetic_flux_density=b) == approx([0.5, 1.5, 2.5], abs=1e-5)
+    with raises(InvalidInput, match="shows no pulse"):
+        hall_pulse_times(time=np.arange(10.0), magnetic_flux_density=np.arange(10.0))
+    for prominence in (0.009, 1.01):
+        with raises(InvalidInput, match="prominence"):
+            hall_pulse_times(time=t, magnetic_flux_density=b, prominence=prominence)
+
+
+def test_speeds_follow_from_each_revolution_and_the_uncertainty_from_their_scatter() -> None:
+    found = disc_rotation(time=[2.0, 2.5, 3.3, 4.3], groove_diameter=0.04)
+    assert found.rotation_speed == approx([2.0, 1.25, 1.0])
+    assert found.sliding_speed == approx(np.pi * 0.04 * np.array([2.0, 1.25, 1.0]))
+    assert found.mean_rotation_speed == approx(3 / 2.3)
+    assert found.rotation_speed_uncertainty >= np.std([2.0, 1.25, 1.0], ddof=1) / np.sqrt(3) * 0.999
+    assert disc_rotation(time=[2.0, 2.5], groove_diameter=0.04).rotation_speed_uncertainty == 0.0
+    with raises(InvalidInput, match="groove_diameter must be positive"):
+        disc_rotation(time=[2.0, 2.5], groove_diameter=0.0)
+    with raises(InvalidInput, match="a revolution needs 4 pulses, got 3"):
+        disc_rotation(time=[1.0, 2.0, 3.0], groove_diameter=0.04, magnets=3)
+
+
+@pytest.mark.parametrize(
+    ("interval", "steps"),
+    [
+        ([1.0, 2.45, 1.0], [1, 2, 1]),  # within a quarter of two
+        ([1.0, 2.55, 1.0], [1, 3, 1]),  # within a quarter of three
+        ([1.0, 1.52, 1.0], [1, 2, 1]),
+        ([1.0, 1.48, 1.0], [1, 1, 1]),  # of one is no missing pulse
+        ([1.0, 6.0, 1.0], [1, 6, 1]),  # five are missing
+        ([1.0, 7.0, 1.0], [1, 1, 1]),
+        ([1.0, 2.0, 2.0, 2.0], [1, 1, 1, 1]),  # a step of speed
+        ([2.0, 1.0, 1.0], [2, 1, 1]),  # at the beginning
+        ([1.0, 1.0, 3.0], [1, 1, 3]),  # at the end
+        ([1.0, 2.45, 1.6], [1, 2, 1]),  # 2.45 and 1.53 times its neighbours: both within a quarter of two
+        ([1.0, 2.6, 1.6], [1, 1, 1]),  # 2.6 times is not
+        ([1.6, 2.6, 1.0], [1, 1, 1]),
+    ],
+)
+def test_an_interval_is_several_revolutions_where_it_is_a_multiple_of_both_neighbours(
+    interval: list[float], steps: list[int]
+) -> None:
+    found = disc_rotation(time=np.cumsum([0.0, *interval]), groove_diameter=0.05)
+    assert np.diff(np.flatnonzero(~found.interpolated)).tolist() == steps
+
+
+def test_fractions_are_those_of_the_two_revolutions_that_are_most_alike() -> None:
+    fractions = np.array([0.2, 0.3, 0.5])
+    # five revolutions that slow down, but for the third and fourth, which take 2 s each
+    durations = np.repeat([1.6, 1.8, 2.0, 2.0, 2.3], 3)
+    times = np.cumsum([0.0, *(np.tile(fractions, 5) * durations)])
+    found = disc_rotation(time=times, groove_diameter=0.05, magnets=3)
+    assert found.revolutions == approx(np.concatenate([[0.0], np.cumsum(np.tile(fractions, 5))]))
+    assert not found.interpolated.any()
+    assert found.rotation_speed[[0, -1]] == approx([1 / 1.6, 1 / 2.3])
+
+
+def test_revolutions_between_pulses_of_a_steady_acceleration_are_close_to_its_parabola() -> None:
+    turns = np.arange(12)
+    time = np.sqrt(turns + 4.0)  # turns = time^2 - 4
+    found = disc_rotation(time=time, groove_diameter=0.05)
+    between = np.linspace(2.5, 3.8, 20)
+    assert revolutions_at(found, time=between) == approx(between**2 - 4, abs=0.01)
+    first, last = found.rotation_speed[0], found.rotation_speed[-1]
+    ends = revolutions_at(found, time=[1.0, time[-1] + 0.5])
+    assert ends == approx([-first * (2.0 - 1.0), 11 + 0.5 * last])

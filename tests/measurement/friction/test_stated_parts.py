@@ -4,10 +4,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 from pytest import approx, raises
 
 import sonolube as sl
 from sonolube.errors import InvalidInput
+from sonolube.measurement.friction.stated_parts import STATED_STEP, StatedParts, with_stated_parts
 from sonolube.tasks.files import NamedBytes
 
 ZERO, INTRINSIC, REDUCTION = 0.05, 1.0, 0.4
@@ -86,3 +88,52 @@ def test_parts_need_a_time() -> None:
     cycles = NamedBytes("cycles.csv", b"revolutions,friction_coefficient\n1,0.3\n2,0.4\n3,0.3\n")
     with raises(InvalidInput, match="stated by the time"):
         sl.measure.friction(cycles, part="0s:3s")
+
+
+def small(**channels: list[float]) -> xr.Dataset:
+    made = {name: ("time", np.array(values), {"units": "x"}) for name, values in channels.items()}
+    return xr.Dataset(made, coords={"time": np.arange(6.0)})
+
+
+def test_rest_sets_every_recorded_speed_to_zero_or_stops_the_motor() -> None:
+    given = small(friction_force=[1, 2, 3, 4, 5, 6], sliding_speed=[7.0] * 6, rotation_speed=[3.0] * 6)
+    rested = with_stated_parts(given, StatedParts(rests=((1.0, 2.0), (4.5, 9.0))))
+    assert rested["sliding_speed"].values.tolist() == [7, 0, 0, 7, 7, 0]
+    assert rested["rotation_speed"].values.tolist() == [3, 0, 0, 3, 3, 0]
+    assert rested["sliding_speed"].attrs == {"units": "x"}
+    assert "motor_on" not in rested
+    assert rested.attrs["rest"] == "as stated"
+    alone = with_stated_parts(small(friction_force=[1.0] * 6), StatedParts(rests=((0.0, 1.0),)))
+    assert alone["motor_on"].values.tolist() == [0, 0, 1, 1, 1, 1]
+
+
+def test_steps_number_their_samples_and_hide_the_force_outside_where_no_speed_tells_rest() -> None:
+    steps = (((1.0, 2.0), 0.0), ((4.0, 5.0), 12.0))
+    stated = with_stated_parts(small(friction_force=[1, 2, 3, 4, 5, 6]), StatedParts(steps=steps))
+    assert stated[STATED_STEP].values.tolist() == [0, 1, 1, 0, 2, 2]
+    assert stated["voltage_peak_to_peak"].values == approx([np.nan, 0, 0, np.nan, 12, 12], nan_ok=True)
+    assert stated["voltage_peak_to_peak"].attrs == {"units": "V"}
+    assert stated["friction_force"].values == approx([np.nan, 2, 3, np.nan, 5, 6], nan_ok=True)
+    assert "rest" not in stated.attrs
+    rested = with_stated_parts(small(friction_force=[1, 2, 3, 4, 5, 6]), StatedParts(steps=steps, rests=((0.0, 0.5),)))
+    assert rested["friction_force"].values == approx([1, 2, 3, np.nan, 5, 6], nan_ok=True)
+    moving = small(friction_force=[1, 2, 3, 4, 5, 6], sliding_speed=[7.0] * 6)
+    assert with_stated_parts(moving, StatedParts(steps=steps))["friction_force"].values.tolist() == [1, 2, 3, 4, 5, 6]
+    part = with_stated_parts(moving, StatedParts(steps=steps, part=(1.0, 3.0)))
+    assert part["time"].values.tolist() == [1, 2, 3]
+    assert with_stated_parts(moving, StatedParts()) is moving
+
+
+def test_neighbouring_steps_and_a_rest_just_over_the_reversal_of_a_stroke_are_accepted() -> None:
+    assert StatedParts(steps=(((4.0, 5.0), 1.0), ((1.0, 4.0), 0.0))).steps[0][1] == 1.0
+    assert StatedParts(rests=((1.0, 1.21),)).rests
+    with raises(InvalidInput, match=r"a rest must be longer than 0\.2 s, got 1 s to 1\.2 s"):
+        StatedParts(rests=((1.0, 1.2),))
+    with raises(InvalidInput, match="a part must end after it begins, got 3 s to 3 s"):
+        StatedParts(part=(3.0, 3.0))
+    with raises(InvalidInput, match="a part must end after it begins"):
+        StatedParts(rests=((3.0, 2.0),))
+    with raises(InvalidInput, match=r"steps must not overlap: one ends at 4\.5 s, the next begins at 4 s"):
+        StatedParts(steps=(((4.0, 5.0), 1.0), ((1.0, 4.5), 0.0)))
+    with raises(InvalidInput, match="holds no sample; the recording is from 0 s to 5 s"):
+        with_stated_parts(small(friction_force=[1.0] * 6), StatedParts(rests=((1.2, 1.8),)))

@@ -89,3 +89,41 @@ def test_missing_values_empty_only_the_windows_they_fill(block: int, tmp_path: P
     assert windows.mean == approx([1, np.nan, np.nan, 1, 1], nan_ok=True)
     with raises(InvalidInput, match="channel 'temperature' holds no value"):
         streamed_window_statistics(path, block_samples=block)
+
+
+def test_windows_carry_their_middle_duration_channel_and_unit() -> None:
+    t = 10 + np.array([0.0, 1.0, 2.0, 3.0, 9.0, 10.0])
+    windows = window_statistics(
+        np.array([1.0, 4.0, 7.0, np.nan, 5.0, 8.0]), time=t, window_duration=3.0, channel="friction_force", unit="N"
+    )
+    assert windows.time == approx([11.5, 14.5, 20.5])
+    assert windows.mean == approx([4.0, np.nan, 6.5], nan_ok=True)
+    assert windows.samples.tolist() == [3, 0, 2]
+    assert windows.deviation == approx([3.0, np.nan, 1.5 * np.sqrt(2)], nan_ok=True)
+    assert windows.fluctuation == approx([np.sqrt(6), np.nan, 1.5], nan_ok=True)
+    assert (windows.window_duration, windows.channel, windows.unit) == (3.0, "friction_force", "N")
+    single = window_statistics(np.array([3.0, 5.0, 9.0]), time=np.array([0.0, 1.0, 2.0]))
+    assert single.window_duration == 2.0
+    assert single.deviation == approx([np.sqrt(2), np.nan], nan_ok=True)  # of a single sample there is none
+    with raises(InvalidInput, match="window_duration must be positive"):
+        window_statistics(np.ones(3), time=np.arange(3.0), window_duration=0.0)
+    with raises(InvalidInput, match="friction_force must hold 3 numbers"):
+        window_statistics(np.ones(2), time=np.arange(3.0), channel="friction_force")
+
+
+def test_a_window_whose_beginning_is_rounded_belongs_to_itself() -> None:
+    t = 0.1 * np.arange(10)  # 0.3 and 0.6 are rounded
+    assert window_statistics(np.arange(10.0), time=t, window_duration=0.3).samples.tolist() == [3, 3, 3, 1]
+
+
+def test_a_missing_channel_of_a_stream_is_named_with_those_that_are_there(tmp_path: Path) -> None:
+    path = tmp_path / "short.tdms"
+    with TdmsWriter(path) as writer:
+        writer.write_segment([ChannelObject("g", "friction_force", np.ones(9), {"wf_increment": 0.5})])
+    with raises(InvalidInput, match="has no channel 'torque'; it has friction_force"):
+        streamed_window_statistics(path, channels=["torque"])
+    with raises(InvalidInput, match="window_duration must be positive"):
+        streamed_window_statistics(path, window_duration=-1.0)
+    (found,) = streamed_window_statistics(path, window_duration=3.0, block_samples=4).values()
+    assert found.samples.tolist() == [6, 3]
+    assert found.channel == "friction_force"

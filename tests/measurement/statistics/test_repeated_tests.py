@@ -88,3 +88,50 @@ def test_a_denominator_not_significantly_different_from_zero_leaves_the_interval
 def test_a_single_test_is_refused() -> None:
     with raises(InvalidInput, match="tests must be at least two tests, got 1"):
         mean_estimate([1.0])
+
+
+def test_a_mean_states_its_error_number_and_level() -> None:
+    estimate = mean_estimate([2.0, 4.0, 9.0], confidence_level=0.9)
+    # variance (9 + 1 + 16)/2 = 13
+    assert estimate.mean == approx(5.0)
+    assert estimate.deviation == approx(13**0.5)
+    assert estimate.uncertainty == approx((13 / 3) ** 0.5)
+    assert estimate.upper - 5 == approx(stats.t.ppf(0.95, 2) * (13 / 3) ** 0.5)
+    assert 5 - estimate.lower == approx(estimate.upper - 5)
+    assert (estimate.tests, estimate.confidence_level) == (3, 0.9)
+    for level in (0.49, 0.99995):
+        with raises(InvalidInput, match="confidence_level"):
+            mean_estimate([1.0, 2.0], confidence_level=level)
+
+
+def test_a_difference_is_the_second_less_the_first_with_satterthwaites_degrees_of_freedom() -> None:
+    found = compare_means([1.0, 3.0], [4.0, 10.0, 7.0], confidence_level=0.8)
+    # variances of the means 2/2 = 1 and 9/3 = 3: error 2; (1 + 3)^2/(1/1 + 9/2) = 16/5.5
+    assert found.difference == approx(5.0)
+    assert found.t_statistic == approx(2.5)
+    assert found.degrees_of_freedom == approx(16 / 5.5)
+    half = 2 * stats.t.ppf(0.9, 16 / 5.5)
+    assert (found.lower, found.upper) == approx((5 - half, 5 + half))
+    assert found.confidence_level == 0.8
+    assert compare_means([3.0, 3.0], [2.0, 2.0]).t_statistic == -np.inf
+    equal = compare_means([2.0, 2.0, 2.0], [2.0, 2.0])
+    assert (equal.t_statistic, equal.degrees_of_freedom) == (0.0, 3.0)
+    with raises(InvalidInput, match="permutations of 24 tests are too many"):
+        compare_means(np.arange(12), np.arange(12))
+
+
+def test_fiellers_interval_is_the_solution_of_its_quadratic() -> None:
+    found = ratio_interval([1.0, 3.0], [9.0, 11.0, 13.0], confidence_level=0.8)
+    # means 2 and 11; variances of them 1 and 4/3; ratio 2/11
+    rho, v_x, v_y = 2 / 11, 1.0, 4 / 3
+    freedom = (v_x + rho**2 * v_y) ** 2 / (v_x**2 / 1 + (rho**2 * v_y) ** 2 / 2)
+    t = stats.t.ppf(0.9, freedom)
+    roots = np.sort(np.roots([11**2 - t**2 * v_y, -2 * 2 * 11, 2**2 - t**2 * v_x]))
+    assert found.ratio == approx(rho)
+    assert (found.lower, found.upper) == approx(tuple(roots))
+    assert (found.bounded, found.reason, found.confidence_level) == (True, "", 0.8)
+    unbounded = ratio_interval([1.0, 1.1], [0.1, -0.05])
+    assert (unbounded.lower, unbounded.upper) == (-np.inf, np.inf)
+    assert "0.025 with standard error 0.075" in unbounded.reason
+    with raises(InvalidInput, match="denominator must not have a mean of zero"):
+        ratio_interval([1.0, 2.0], [-1.0, 1.0])

@@ -122,10 +122,11 @@ def read_mode_shapes(path: str | Path, *, units: UnitSystem | None = None) -> Mo
 
 def _checked(found: ModeShapes, path: Path) -> ModeShapes:
     """Modes by frequency, finite, without negative values, and with rigid motions at zero."""
-    known = found.natural_frequency, found.shape, np.nan_to_num(found.modal_mass), np.nan_to_num(found.damping_ratio)
+    stated = [np.where(np.isnan(each), 0.0, each) for each in (found.modal_mass, found.damping_ratio)]
+    known = found.natural_frequency, found.shape, *stated
     if not all(np.all(np.isfinite(each)) for each in known):
         raise InvalidInput(f"{path}: a frequency, mass or displacement of a mode is not finite")
-    if any(np.any(each < 0) for each in (found.natural_frequency, *known[2:])):
+    if any(np.any(each < 0) for each in (found.natural_frequency, *stated)):
         raise InvalidInput(f"{path}: a mode has a negative frequency, modal mass or damping; it is no stable vibration")
     order = np.argsort(found.natural_frequency, kind="stable")
     frequency = found.natural_frequency[order]
