@@ -1,4 +1,4 @@
-"""Runs that have ended, are watched or were only gone through: outcome, record and next command in words and numbers."""
+"""Runs that have ended, are watched or were only gone through: outcome, record and next command in words."""
 
 from collections.abc import Mapping
 from dataclasses import replace

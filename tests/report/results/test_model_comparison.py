@@ -73,7 +73,8 @@ def test_blocks_of_a_comparison_have_the_assessed_models_their_parameters_and_wh
     head, table, *lines = results.fit_blocks(fits)
     letters = ", ".join(DATA_SETS)
     assert head == (
-        f"2 models, 2 tests in sets {letters}; errors of the friction ratio, unseen: of each set by what has not seen it"
+        f"2 models, 2 tests in sets {letters}; errors of the friction ratio,"
+        " unseen: of each set by what has not seen it"
     )
     assert isinstance(table, Table)
     assert list(table.heads) == ["model", "sets", "tests", "k", "rms", "unseen", "median", "AICc"]

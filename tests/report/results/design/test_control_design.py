@@ -82,7 +82,8 @@ def test_the_facts_of_a_loop_have_delay_margins_and_step_in_words() -> None:
         "drive": "up to 27.5 V peak to peak, by the amplifier's voltage",
         "process": "vibration 800 us, delay 1 ms, interval 200 us",
         "controller": "K_c 0.432, tau_I 2.5 ms (SIMC), feed-forward model",
-        "margins": "gain 3.50 where real friction changes 1.23 times as expected, phase 60.0 deg, delay 1.5 ms, Ms 1.59",
+        "margins": "gain 3.50 where real friction changes 1.23 times as expected, phase 60.0 deg, delay 1.5 ms,"
+        " Ms 1.59",
         "step": "rise 3 ms, within 5 % after never, overshoot 4.2 %",
         "disturbance": "10 % more friction: at most 120 mN off the target, back within 5 % of that after 4 ms",
         "tracking error": "5 mN rms once settled",
@@ -182,8 +183,8 @@ def test_a_drive_at_the_end_of_its_band_has_lost_the_resonance(monkeypatch: Monk
     band = SimpleNamespace(lowest_frequency=21850.0, highest_frequency=23e3)
     assert results.caveats(RIG, design(tracker=band)) == [
         "own",
-        "the drive ends at 21.85 kHz, the end of its band, and has lost the resonance: it returns to it from up to 250 Hz"
-        " above it; warm slower or keep the drive on",
+        "the drive ends at 21.85 kHz, the end of its band, and has lost the resonance: it returns to it from up to"
+        " 250 Hz above it; warm slower or keep the drive on",
     ]
 
 

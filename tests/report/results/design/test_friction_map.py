@@ -96,7 +96,7 @@ def test_the_page_of_a_map_has_the_greatest_reduction_of_each_panel() -> None:
         flat["friction_reduction"]).transpose(*flat["friction_reduction"].dims))  # fmt: skip
     same = results.map_page(RIG, equal, None, None)
     assert same.facts[1] == ("panels", "the same at each normal load from 3 N to 5 N, within 0.01 percentage points")
-    assert [table.title for table in same.tables][0] == "Points by status"
+    assert same.tables[0].title == "Points by status"
     assert results.map_object(RIG, equal)["same_panels"] is True
 
 
