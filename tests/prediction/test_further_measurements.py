@@ -197,7 +197,7 @@ def test_length_and_amplitude_are_split_from_their_ratio_by_their_own_spreads() 
 
 
 def test_what_careful_measurements_leave_is_ten_two_and_three_percent() -> None:
-    assert {"decay_length": 0.1, "vibration_amplitude": 0.02, "friction_coefficient": 0.03} == KNOWN_WELL
+    assert KNOWN_WELL == {"decay_length": 0.1, "vibration_amplitude": 0.02, "friction_coefficient": 0.03}
 
 
 def test_a_run_tells_less_at_twice_the_speed_and_a_resonance_what_it_resolves() -> None:

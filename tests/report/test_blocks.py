@@ -3,7 +3,7 @@
 from hypothesis import given, strategies as st
 from pytest import mark
 
-from sonolube.report.blocks import Rows, Table, text_lines
+from sonolube.report.blocks import Block, Rows, Table, Verbatim, block_html, text_lines
 from sonolube.text.plain_text import aligned, grid
 
 WORD = st.text("abcdefgh", min_size=1, max_size=9)
@@ -46,3 +46,27 @@ def test_no_line_is_wider_than_asked_for_and_no_word_is_lost(rows: list[list[str
     assert max(map(len, lines)) <= 60
     words = " ".join(lines).split()
     assert all(word in words for row in rows for cell in row for word in cell.split())
+
+
+BLOCKS: list[Block] = [
+    " <lead> ",
+    Rows([("a<b", "1 & 2")]),
+    Table((" head ", "x>y"), [(" 1 ", "<2>")]),
+    Verbatim("<a>\n  b"),
+]
+
+
+def test_every_kind_of_block_is_escaped_in_html_and_stripped_but_for_texts_of_files() -> None:
+    assert "".join(map(block_html, BLOCKS)) == (
+        "<p>&lt;lead&gt;</p>"
+        "<table><tbody><tr><th>a&lt;b</th><td>1 &amp; 2</td></tr></tbody></table>"
+        "<table><thead><tr><th>head</th><th>x&gt;y</th></tr></thead>"
+        "<tbody><tr><td>1</td><td>&lt;2&gt;</td></tr></tbody></table>"
+        "<pre>&lt;a&gt;\n  b</pre>"
+    )
+
+
+def test_every_kind_of_block_has_its_lines_in_their_order_and_a_table_without_heads_has_none() -> None:
+    table = Table(("", ""), [("1", "22")])
+    assert text_lines([*BLOCKS[1:2], table, BLOCKS[3], "end"]) == ["  a<b  1 & 2", "  1  22", "<a>", "  b", "end"]
+    assert text_lines([Table(("h", ""), [("1", "22")])]) == ["  h", "  1  22"]

@@ -38,7 +38,10 @@ def decided(
     length = 1e-6 * np.column_stack([np.ones(101), growth * spread[:, 0]])
     amplitude = 2e-6 * np.column_stack([np.ones(101), spread[:, 0] / fall])
     model = SimpleNamespace(
-        channels=(SimpleNamespace(name="friction_ratio", values=np.zeros(4)), SimpleNamespace(name="stack_current", values=np.zeros(2))),
+        channels=(
+            SimpleNamespace(name="friction_ratio", values=np.zeros(4)),
+            SimpleNamespace(name="stack_current", values=np.zeros(2)),
+        ),
         residuals=lambda deviates: np.concatenate([np.zeros(4), np.full(2, misfit)])[None],
         fitted=lambda mode: {"friction_ratio": mode},
     )

@@ -238,7 +238,9 @@ def test_the_large_drive_follows_the_fall_of_the_vibration_only_where_it_is_said
     for follows in (True, False):
         changes = Changes(grows=False, falls=True, drifts=False, follows=follows)
         model = RunModel(table, known, changes, channels=run_channels(table, known))
-        row = deviates(model, decay_length=np.log(0.8e-6), growth=0.0, fall=0.9, large_drive=np.log(2e-6), shift_scale=2.0)
+        row = deviates(
+            model, decay_length=np.log(0.8e-6), growth=0.0, fall=0.9, large_drive=np.log(2e-6), shift_scale=2.0
+        )
         found = model.predicted(row)
         shares.append(found["large_drive_shift"][0] / found["small_drive_shift"][0])
         assert_allclose(found["small_drive_shift"][0], np.exp(2.0))  # over that at the beginning, times its scale

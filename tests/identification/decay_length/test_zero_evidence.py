@@ -32,7 +32,9 @@ def by_hand() -> tuple[float, np.ndarray]:
     """
     gaps = np.abs(S[:, None] - S) / S[-1]
     white = NOISE**2 * np.eye(S.size)
-    noises = [white + (w * FORCE) ** 2 * np.exp(-gaps / length) for w in (0.005, 0.015, 0.05) for length in (0.1, 0.3, 1.0)]
+    noises = [
+        white + (w * FORCE) ** 2 * np.exp(-gaps / length) for w in (0.005, 0.015, 0.05) for length in (0.1, 0.3, 1.0)
+    ]
     level = np.ones((S.size, 1))
     courses = [(1 - np.exp(-S / (r * S[-1]))) / (1 - np.exp(-1 / r)) for r in (0.05, 0.2, 0.5, 2.0)]
     shapes = [level, *(np.column_stack([level, course]) for course in courses)]
