@@ -131,7 +131,8 @@ def test_interpolated_ratios_are_those_of_the_formula_and_those_of_its_edge_beyo
 
 def test_stated_uncertainties_weigh_the_white_noise_and_bound_it_from_below() -> None:
     stated = np.where(np.arange(S.size) % 2, 0.3, 0.1)
-    found = noise_covariance(S, 1e-3 * stated * np.random.default_rng(5).standard_normal(S.size), stated)
+    signs = np.resize([1.0, -1.0, -1.0, 1.0], S.size)  # nothing that wanders
+    found = noise_covariance(S, 1e-3 * stated * signs, stated)
     variances = np.diag(found)
     assert_allclose(variances[1::2] / variances[0:-1:2], 9.0)
     assert np.mean(variances) == pytest.approx(float(np.mean(stated**2)))  # whatever the readings

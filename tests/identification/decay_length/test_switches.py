@@ -173,25 +173,25 @@ def test_means_are_of_the_halves_beside_a_switch_without_a_tenth_at_either_end()
     size, stage = data.sizes["time"], SLIDE + LIFT
     place = np.arange(size) % stage
     on = np.arange(size) // stage % 2 == 1
-    creep = np.where(place < SLIDE, 1e-3 * place, 400.0)
+    creep = np.where(place < SLIDE, 1e-3 * place, -5.0)
     data["friction_force"] = ("time", creep + np.where(on & (place < SLIDE), 0.0, 2.0) * (place < SLIDE))
     table = recorded_switches(data, sliding_speed=SPEED, rotation_speed=1e-4)
     before, after = np.mean(np.arange(385, 693)) * 1e-3, np.mean(np.arange(77, 385)) * 1e-3
     assert table.intrinsic_friction_force[0] - table.friction_force[0] == approx(2 + before - after, abs=0.02)
     assert table.friction_force[1] - table.intrinsic_friction_force[1] == approx(-2 + before - after, abs=0.02)
-    assert table.force_zero == approx(np.full(STAGES - 1, 400.0))
+    assert table.force_zero == approx(np.full(STAGES - 1, -5.0))
 
 
 def test_an_alternating_current_counts_by_its_amplitude_and_a_rectified_one_by_its_mean() -> None:
     data = recording()
     t, on = data["time"].to_numpy(), data["voltage_peak_to_peak"].to_numpy() > 0
     data["stack_current"] = ("time", np.where(on, 0.02 + 0.3 * np.sin(2 * np.pi * 1.37 * t), 0.0))
-    table = recorded_switches(data, sliding_speed=SPEED)
+    table = recorded_switches(data, sliding_speed=SPEED, rotation_speed=0.41)
     assert table.stack_current == approx(np.full(STAGES - 1, 0.3), rel=0.02)
     assert table.stack_current_uncertainty is not None
     assert np.all(table.stack_current_uncertainty < 0.01)
     data["stack_current"] = ("time", np.where(on, 0.3 + 0.3 * np.sin(2 * np.pi * 1.37 * t), 0.0))
-    assert recorded_switches(data, sliding_speed=SPEED).stack_current == approx(np.full(STAGES - 1, 0.3), rel=0.02)
+    assert recorded_switches(data, sliding_speed=SPEED, rotation_speed=0.41).stack_current == approx(np.full(STAGES - 1, 0.3), rel=0.02)
 
 
 @pytest.mark.parametrize(("drive", "enters"), [(1.9, True), (2.1, False)])
@@ -200,12 +200,12 @@ def test_a_current_needs_five_samples_a_period_of_the_drive(drive: float, enters
     t, on = data["time"].to_numpy(), data["voltage_peak_to_peak"].to_numpy() > 0
     data["stack_current"] = ("time", np.where(on, 0.3 * np.sin(2 * np.pi * 1.37 * t), 0.0))
     data["frequency_set"] = ("time", np.where(t < 50, 0.5, drive))
-    table = recorded_switches(data, sliding_speed=SPEED)
+    table = recorded_switches(data, sliding_speed=SPEED, rotation_speed=0.41)
     assert (table.stack_current is not None) is enters
     assert bool(table.caveats) is not enters
     assert enters or table.caveats[0].startswith("stack_current at 10 Hz does not resolve the drive")
     data["stack_current"] = ("time", np.full(t.size, 0.3))
-    assert recorded_switches(data, sliding_speed=SPEED).caveats == ()  # a rectified one
+    assert recorded_switches(data, sliding_speed=SPEED, rotation_speed=0.41).caveats == ()  # a rectified one
 
 
 def test_the_distance_is_that_of_the_set_speed_and_stands_still_while_nothing_is_recorded() -> None:
@@ -213,13 +213,13 @@ def test_the_distance_is_that_of_the_set_speed_and_stands_still_while_nothing_is
     t = data["time"].to_numpy()
     lifted = data["normal_load"].to_numpy() == 0
     data["sliding_speed_set"] = ("time", np.where(lifted, 0.0, 0.13))
-    assert recorded_switches(data, sliding_speed=SPEED).sliding_distance == approx(10.0 * np.arange(1, STAGES), abs=0.2)
+    assert recorded_switches(data, sliding_speed=SPEED, rotation_speed=0.41).sliding_distance == approx(10.0 * np.arange(1, STAGES), abs=0.2)
     late = recording().assign_coords(time=np.where(t < 100, t, t + 500.0))
-    assert recorded_switches(late, sliding_speed=SPEED).sliding_distance == approx(5.0 * np.arange(1, STAGES), abs=0.1)
+    assert recorded_switches(late, sliding_speed=SPEED, rotation_speed=0.41).sliding_distance == approx(5.0 * np.arange(1, STAGES), abs=0.1)
 
 
 def test_a_load_that_is_never_positive_is_refused() -> None:
     data = recording()
     data["normal_load"] = 0 * data["normal_load"]
     with raises(InvalidInput, match="normal_load must be positive while the pin slides"):
-        recorded_switches(data, sliding_speed=SPEED)
+        recorded_switches(data, sliding_speed=SPEED, rotation_speed=0.41)

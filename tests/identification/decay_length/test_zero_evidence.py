@@ -11,7 +11,7 @@ from sonolube.identification.decay_length.zero_error import zero_evidence
 from sonolube.models.friction.models.asperity_stick_slip_sine import sine_stick_slip_ratio
 
 S = np.arange(6.0, 60.0, 6.0)
-FORCE, NOISE = 1.2, 0.02
+FORCE, NOISE = 1.2, 0.04  # more than the differences of neighbours tell
 ZERO = np.array([0.01, -0.02, 0.05, 0.04, 0.09, 0.08, 0.13, 0.11, 0.14])
 
 
