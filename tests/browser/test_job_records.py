@@ -15,7 +15,7 @@ from sonolube.errors import InvalidInput
 from sonolube.operating_system import process_start
 
 NOWHERE: dict[str, Any] = {"rigs": {}, "uploads": ""}
-NOW = 2e9
+NOW = 1e9
 
 
 class Process:

@@ -25,7 +25,7 @@ duration = "2 s"
 
 [[steps]]
 kind = "repeat"
-times = 3
+count = 3
 
   [[steps.steps]]
   kind = "acquire"
