@@ -16,5 +16,6 @@ LIST = MutantList(
     rooms=ROOMS,
     room_bar=0.85,
     bar=0.92,
+    max_equivalent=0.05,
 )
 STUDY = LIST.study()
