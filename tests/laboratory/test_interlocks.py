@@ -241,14 +241,11 @@ def test_the_sampling_of_a_protocol_is_that_with_the_fewest_samples_a_period() -
         off = {"kind": "drive", "voltage_peak_to_peak": "0 V"}
         return [acquire, {"kind": "drive", **volts}, {"kind": "wait", "duration": "1 s"}, off]
 
-    # 100 kHz / 20 kHz = 5, 40 kHz / 10 kHz = 4, 300 kHz / 30 kHz = 10 samples a period
-    steps = [
-        *part("20 kHz", "sine", "100 kHz"),
-        *part("10 kHz", "square", "40 kHz"),
-        *part("30 kHz", "sine", "300 kHz"),
-    ]
+    # 50 kHz / 10 kHz = 5, 80 kHz / 20 kHz = 4, 300 kHz / 30 kHz = 10 samples a period
+    parts = ("10 kHz", "sine", "50 kHz"), ("20 kHz", "square", "80 kHz"), ("30 kHz", "sine", "300 kHz")
+    steps = [step for each in parts for step in part(*each)]
     found = drive_sampling(protocol_from({**known, "steps": steps}))
-    assert found == DriveSampling(sample_rate=40e3, frequency=10e3, is_sine=False, frequency_maximum=30e3)
+    assert found == DriveSampling(sample_rate=80e3, frequency=20e3, is_sine=False, frequency_maximum=30e3)
     sines = drive_sampling(protocol_from({**known, "steps": part("20 kHz", "sine", "100 kHz")}))
     assert sines == DriveSampling(sample_rate=100e3, frequency=20e3, is_sine=True, frequency_maximum=20e3)
     assert DriveSampling(sample_rate=1.0, frequency=1.0) == DriveSampling(
