@@ -6,11 +6,24 @@ from typing import Any
 
 import pytest
 from pytest import approx
-from tests.test_additions import RIG, answer, run
+from tests.test_additions import RIG, answer, extend, run
 
 DEVICES = Path(__file__).parents[3] / "examples" / "lab"
 
 VOLTAGE_RAMP = '''
+"""Step `voltage_ramp`."""
+
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType
+from typing import Any, ClassVar, Literal, final
+
+from pydantic import Field
+
+from sonolube.facts.protocol.quantity_text import Hertz, Seconds, Volts
+from sonolube.facts.protocol.step import Change, DriveSetPoint, StepTable
+
+
+@final
 class VoltageRamp(StepTable):
     """Raise the voltage of the actuator from 0 V in equal steps."""
 
@@ -30,8 +43,6 @@ class VoltageRamp(StepTable):
             voltage = self.last_voltage * number / self.points
             drive = DriveSetPoint(voltage_peak_to_peak=voltage, frequency=self.frequency)
             yield Change(duration=self.duration / self.points, drive=drive)
-
-
 '''
 RAMP = """
 [[steps]]
@@ -66,10 +77,17 @@ duration = "1 s"
 
 def with_ramp(copied_package: Path) -> Path:
     """Folder of a copied package with the step added, and of a protocol that has one."""
+    extend(
+        copied_package / "facts" / "protocol" / "voltage_ramp.py",
+        VOLTAGE_RAMP,
+        table=copied_package / "facts" / "protocol" / "record.py",
+        after="from sonolube.facts.protocol.step import Change, StepTable\n",
+        line="from sonolube.facts.protocol.voltage_ramp import VoltageRamp",
+    )
     record = copied_package / "facts" / "protocol" / "record.py"
     text, table = record.read_text(), "Step = Annotated[\n    Wait |"
     assert table in text
-    record.write_text(text.replace(table, f"{VOLTAGE_RAMP.strip()}\n\n\n{table} VoltageRamp |"))
+    record.write_text(text.replace(table, f"{table} VoltageRamp |"))
     (copied_package.parent / "ramp.toml").write_text(RAMPED, encoding="utf-8")
     return copied_package.parent
 

@@ -1,3 +1,4 @@
+from .acquisition_and_operator import Acquire as Acquire, Check as Check, Prompt as Prompt
 from .edits import (
     ProtocolField as ProtocolField,
     ProtocolStep as ProtocolStep,
@@ -5,21 +6,20 @@ from .edits import (
     protocol_fields as protocol_fields,
     protocol_steps as protocol_steps,
 )
-from .quantity_text import exact_text as exact_text
-from .record import (
-    STEP_KINDS as STEP_KINDS,
-    Acquire as Acquire,
-    Check as Check,
+from .output_steps import (
     Drive as Drive,
-    Limits as Limits,
-    Metadata as Metadata,
     MotorSpeed as MotorSpeed,
-    Prompt as Prompt,
-    Protocol as Protocol,
-    Repeat as Repeat,
     Sweep as Sweep,
     VoltageSteps as VoltageSteps,
     Wait as Wait,
+)
+from .quantity_text import exact_text as exact_text
+from .record import (
+    STEP_KINDS as STEP_KINDS,
+    Limits as Limits,
+    Metadata as Metadata,
+    Protocol as Protocol,
+    Repeat as Repeat,
 )
 from .text import (
     protocol_by_name_or_file as protocol_by_name_or_file,

@@ -3,7 +3,7 @@
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal, Self, get_args
+from typing import Any, ClassVar, Final, Literal, Self, get_args
 
 from sonolube.errors import InvalidInput
 from sonolube.facts.protocol.quantity_text import Table
@@ -12,6 +12,9 @@ from sonolube.text.units import format_si
 Waveform = Literal["sine", "square", "triangle", "sawtooth"]
 Lane = Literal["motor", "drive", "record"]
 """Part of the rig whose set points a step sets; a recording that it begins counts as one."""
+
+LONGEST_TEXT: Final = 2000
+"""Number of characters of a text of a step."""
 
 LANES: tuple[Lane, ...] = get_args(Lane)
 """All parts, in the order in which they are listed."""
