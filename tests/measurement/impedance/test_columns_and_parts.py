@@ -165,7 +165,7 @@ def test_the_frequency_of_touchstone_is_in_its_unit_and_in_gigahertz_without(uni
         ("[Version] 2.0\n# Hz S RI\n[Colour] red\n1 2 3\n", r"line 3: the keyword '\[colour\]' is not known"),
         ("[Version] 2.0\n# Hz S RI\n[Number of Ports] 3\n1 2 3\n", "line 3: is a network of 3 ports"),
         ("# Hz S RI\n1 2 inf\n", "line 2: a point of one port is three numbers"),
-        ("# Hz S RI R inf\n1 2 3\n", "line 1: the reference resistance must be positive, got 'inf'"),
+        ("# Hz S RI R inf\n1 2 3\n", "line 1: the reference resistance must be positive, got 'INF'"),
     ],
 )
 def test_what_is_no_touchstone_file_of_one_port_is_refused_with_its_line(text: str, words: str) -> None:
@@ -230,7 +230,7 @@ def test_a_trace_file_of_an_e4990a_has_data_and_memory() -> None:
     assert found["memory"].impedance.tolist() == [3 + 4j, 5 + 6j]
     assert found["data"].frequency == approx([1000.0, 2000.0])
     assert found["data"].lines.tolist() == [4, 6]
-    one = [line.replace(", R(Ohm)-mem, X(Ohm)-mem", ", R(Ohm)-mem, note-mem") for line in lines]
+    one = [line.replace(", R(Ohm)-mem, X(Ohm)-mem", ", colour-mem, note-mem") for line in lines]
     assert set(KeysightE4990A().read(Path("a.csv"), one)) == {"data"}
     head = b"!Keysight\n!b\n!c\n!E4990A\n"
     assert KeysightE4990A().recognises(head, Path("a.csv"))
