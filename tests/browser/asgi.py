@@ -34,7 +34,7 @@ class Client:
     headers: Mapping[str, str] = field(default_factory=dict)
 
     def get(self, path: str, *, params: Mapping[str, str] | None = None, **headers: str) -> Answer:
-        return self.ask("GET", path, query=urlencode(params or {}), **headers)
+        return self.ask("GET", path, b"", query=urlencode(params or {}), **headers)
 
     def post(self, path: str, content: object = None, **headers: str) -> Answer:
         body = content if isinstance(content, bytes) else json.dumps(content or {}).encode()
@@ -42,7 +42,7 @@ class Client:
 
     def ask(self, method: str, path: str, body: bytes = b"", *, query: str = "", **headers: str) -> Answer:
         """Answer to a request; names of headers with _ for -."""
-        named = {"host": "localhost"} | self.headers | {name.replace("_", "-"): text for name, text in headers.items()}
+        named = {"host": "localhost", **self.headers} | {name.replace("_", "-"): text for name, text in headers.items()}
         scope = {
             "type": "http", "method": method, "path": unquote(path), "raw_path": path.encode(), "root_path": "",
             "query_string": query.encode(), "scheme": "http", "http_version": "1.1", "server": ("localhost", 80),

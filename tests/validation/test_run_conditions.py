@@ -68,9 +68,7 @@ def test_settings_within_a_hundredth_are_one_condition_of_the_first_run() -> Non
 
 def test_without_repeats_the_stated_uncertainty_of_each_run_is_that_of_its_condition() -> None:
     found = table(
-        friction_reduction=[0.5, 0.4],
-        vibration_amplitude=[1e-6, 2e-6],
-        friction_reduction_uncertainty=[0.03, np.nan],
+        friction_reduction=[0.5, 0.4], vibration_amplitude=[1e-6, 2e-6], friction_reduction_uncertainty=[0.03, np.nan]
     )
     assert found.conditions[0].uncertainty == approx(0.03)
     assert found.conditions[1].uncertainty is None

@@ -3,6 +3,7 @@
 import json
 import os
 from pathlib import Path
+from typing import Any
 
 import pytest
 from pytest import MonkeyPatch, raises
@@ -59,7 +60,8 @@ def test_a_run_is_lost_where_its_very_process_is_gone_without_an_end(
     monkeypatch: MonkeyPatch,
 ) -> None:  # fmt: skip
     monkeypatch.setattr(records, "process_start", lambda process: now if process == 77 else "")
-    found = written(tmp_path, runner=runner, **({} if end is None else {"end": end}))
+    ended: dict[str, Any] = {} if end is None else {"end": end}
+    found = written(tmp_path, runner=runner, **ended)
     assert (found.is_alive, found.is_lost) == (is_alive, is_lost)
 
 

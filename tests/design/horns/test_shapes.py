@@ -1,6 +1,7 @@
 """Default sizes of horns by the wavelength, ends by the gain, and what is refused, by hand."""
 
 from math import atan, hypot, log, pi, tan
+from typing import Any
 
 import pytest
 from pytest import approx, raises
@@ -115,7 +116,7 @@ def test_the_thin_bar_has_the_gain_that_its_end_was_chosen_by(shape: str) -> Non
         ("block", {"gain": 2.0}, "gain 2: block has only gain 1"),
     ],
 )
-def test_a_gain_that_no_end_has_is_refused(shape: str, options: dict[str, float], message: str) -> None:
+def test_a_gain_that_no_end_has_is_refused(shape: str, options: dict[str, Any], message: str) -> None:
     with raises(InvalidInput) as refusal:
         made(shape, **options)
     assert message in str(refusal.value)

@@ -46,7 +46,7 @@ def test_a_lagged_reading_obeys_the_law_of_first_order_from_its_own_beginning() 
     lagged = Lagged(SPEED_UP, 3.0, 0.7)
 
     def rate(time: float, reading: np.ndarray) -> np.ndarray:
-        return (SPEED_UP.at(np.asarray(time)) - reading) / 0.7
+        return np.asarray((SPEED_UP.at(np.asarray(time)) - reading) / 0.7)
 
     times = np.array([2.0, 2.5, 4.0, 12.0])
     solved = solve_ivp(rate, (2.0, 12.0), [3.0], t_eval=times, rtol=1e-9, atol=1e-9).y[0]
@@ -103,7 +103,7 @@ def test_coloured_noise_goes_on_from_block_to_block() -> None:
 
 def test_correlated_noise_loses_a_factor_e_in_its_time_constant() -> None:
     first, second = correlated(time_constant=0.02, sample_rate=500.0)  # ten samples
-    assert (first**10, second) == (approx(exp(-1)), 0.0)
+    assert (first**10, second) == approx((exp(-1), 0.0))
 
 
 def test_resonant_noise_has_the_poles_of_the_damped_oscillator() -> None:

@@ -33,7 +33,7 @@ def test_there_is_no_voltage_below_a_share_of_its_range_or_fifty_millivolts() ->
 
 
 def test_the_surfaces_rest_below_a_twentieth_of_the_highest_speed_for_over_two_tenths_of_a_second() -> None:
-    time = np.arange(100) * 0.05
+    time = np.arange(100.0) * 0.05
     speed = np.full(100, -20.0)  # of either sign
     speed[10:12] = 0.9  # 0.1 s: a stroke turns back
     speed[20:24] = 0.9  # 0.2 s at the sample after it
@@ -52,7 +52,7 @@ def test_the_surfaces_rest_below_a_twentieth_of_the_highest_speed_for_over_two_t
 
 
 def test_without_voltage_the_surfaces_rest_below_half_of_the_level_there() -> None:
-    time = np.arange(4000) * 1e-3
+    time = np.arange(4000.0) * 1e-3
     force = np.ones(4000)
     force[1000:2000] = 0.45
     force[2000:2500] = 0.55
@@ -70,7 +70,7 @@ def test_without_voltage_the_surfaces_rest_below_half_of_the_level_there() -> No
 
 
 def test_rest_is_told_by_the_speed_where_it_is_known_and_by_the_force_elsewhere() -> None:
-    time = np.arange(4000) * 1e-3
+    time = np.arange(4000.0) * 1e-3
     force = np.where(time % 2 < 1, 1.0, 0.0)
     volts = np.where(time < 3.5, 0.0, 20.0)
     speed = np.where(time < 1, 0.0, 3.0)
@@ -90,7 +90,7 @@ def test_stated_ranges_leave_out_zero_and_common_ranges_overlap() -> None:
 
 
 def test_levels_are_constant_over_sections_and_joined_over_short_disturbances() -> None:
-    t = np.arange(600) * 0.01
+    t = np.arange(600.0) * 0.01
     u = np.select([t < 2, t < 4], [0.0, 10.0], 10.3)
     u[250:258] = 30.0  # shorter than a section of 0.1 s
     u[100:110] = np.nan
@@ -104,14 +104,14 @@ def test_levels_are_constant_over_sections_and_joined_over_short_disturbances() 
 
 
 def test_a_step_settles_at_its_beginning_and_for_a_tenth_at_its_end() -> None:
-    t = np.arange(100) * 0.1
+    t = np.arange(100.0) * 0.1
     # from 2.0 s to 6.9 s; settling of 1 s: 3.0 s to 6.8 s inclusive
     part = _settled_part(t, 20, 70, 0.999)
     assert (part.start, part.stop) == (30, 69)
 
 
 def test_the_force_before_sliding_begins_where_a_disc_has_coasted_down() -> None:
-    t = np.arange(1000) * 0.01  # sections of five samples
+    t = np.arange(1000.0) * 0.01  # sections of five samples
     f = np.full(1000, 0.02)
     f[100:200] = 0.9  # an earlier turn of the disc
     f[200:232] = 0.9  # coasting at rest of the motor, into the seventh section
@@ -130,7 +130,7 @@ def test_the_force_before_sliding_begins_where_a_disc_has_coasted_down() -> None
 
 def made() -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Rest for 1 s; 0, 20 and 0 V for 4, 3 and 2 s; the speed rises by half after 2 s of the last."""
-    t = np.arange(1000) * 0.01
+    t = np.arange(1000.0) * 0.01
     u = np.where((t >= 5) & (t < 8), 20.0, 0.0)
     f = np.where(t < 1, 0.0, 1.0 - u / 40)
     v = np.select([t < 1, t < 9], [0.0, 0.02], 0.03)
@@ -178,6 +178,6 @@ def test_steps_that_cannot_be_are_refused(changed: dict[str, float], words: str)
 
 
 def test_a_recording_of_rest_has_no_step() -> None:
-    t = np.arange(1000) * 0.01
+    t = np.arange(1000.0) * 0.01
     with raises(InvalidInput, match="at no constant voltage_peak_to_peak do the surfaces slide for 1 s"):
         sliding_steps(t, 0 * t, 0 * t, 0 * t, shortest_step=1.0, settling_time=0.2, tolerance=0.05)

@@ -119,7 +119,7 @@ def test_the_interval_of_a_fall_is_neither_negative_nor_wider_than_the_force() -
 
 @pytest.mark.parametrize("frequency", [9.0, 31.4, 180.3])
 def test_the_spectrum_peaks_at_a_line_and_holds_its_share(frequency: float) -> None:
-    t = np.arange(2000) * 2e-3
+    t = np.arange(2000.0) * 2e-3
     rng = np.random.default_rng(2)
     sine = np.sqrt(2) * np.sin(2 * np.pi * frequency * t + 0.4)
     found, share = _spectral_peak(sine, 2e-3)
@@ -131,7 +131,7 @@ def test_the_spectrum_peaks_at_a_line_and_holds_its_share(frequency: float) -> N
 
 
 def test_drift_below_two_cycles_is_no_line() -> None:
-    t = np.arange(2000) * 2e-3
+    t = np.arange(2000.0) * 2e-3
     slow = np.cos(2 * np.pi * 0.3 * t) + 0.1 * np.cos(2 * np.pi * 20 * t)
     assert _spectral_peak(slow, 2e-3)[0] == approx(20.0, abs=0.01)
 
@@ -164,15 +164,14 @@ def test_slips_have_a_frequency_within_a_tenth() -> None:
 
 
 def test_a_steady_cycle_in_two_bursts_is_reported_by_its_sections() -> None:
-    t = np.arange(1001) * 1e-3 + 5
+    t = np.arange(1001.0) * 1e-3 + 5
     force = np.linspace(0, 4, 1001)
     found = _by_cycle(t, force, cycle(share=0.5), 49.0)
     assert (found.stick_slip_frequency, found.spectral_frequency) == (50.0, 49.0)
     assert found.stick_slip_amplitude == approx(1.0)
-    assert [(b.start_time, b.end_time, b.force_drops) for b in found.bursts] == [
-        (approx(5.0), approx(5.319), 16),  # 0.319 s times 50 Hz is 15.95
-        (approx(5.64), approx(5.959), 16),
-    ]
+    assert [b.start_time for b in found.bursts] == approx([5.0, 5.64])
+    assert [b.end_time for b in found.bursts] == approx([5.319, 5.959])
+    assert [b.force_drops for b in found.bursts] == [16, 16]  # 0.319 s times 50 Hz is 15.95
     assert found.force_drops == 32
     assert found.stick_slip_fraction == approx(0.638)
     # one sample of a period of twenty: 0.05 N, as much as the truncation; Student's interval about the mean beside it
@@ -187,13 +186,14 @@ def test_a_steady_cycle_in_two_bursts_is_reported_by_its_sections() -> None:
 
 def test_the_estimate_by_slips_spans_from_the_stick_before_the_first_slip() -> None:
     signal, at = teeth([0.2, 0.2, 0.2, 0.2, 0.2])
-    t = 3 + 0.01 * np.arange(signal.size)
+    t = 3 + 0.01 * np.arange(float(signal.size))
     found = _by_slips(t, signal, [at[1:-1]], 2.4)
     assert found.stick_slip_frequency == approx(1 / 0.4)
     assert found.spectral_frequency == 2.4
     assert found.stick_slip_amplitude == approx(0.2, rel=0.03)
     (burst,) = found.bursts
-    assert (burst.start_time, burst.end_time, burst.force_drops) == (approx(3.0), approx(4.6), 4)
+    assert (burst.start_time, burst.end_time) == approx((3.0, 4.6))
+    assert burst.force_drops == 4
     assert found.force_drops == 4
     assert found.slip_time == approx(3 + 0.01 * (at[1:-1] - 0.5))  # between the samples
     assert found.stick_slip_fraction == approx(1.6 / 1.99)
@@ -203,7 +203,7 @@ def test_the_estimate_of_rises_of_unequal_height_has_students_interval_and_one_s
     heights = [0.2, 0.24, 0.18, 0.22, 0.16, 0.2]
     signal, at = teeth([0.2, *heights, 0.2])
     signal = signal + 0.04 * np.random.default_rng(3).standard_normal(signal.size)  # so that slips are left in place
-    t = 0.01 * np.arange(signal.size)
+    t = 0.01 * np.arange(float(signal.size))
     burst = at[1:-1]
     falls, noise = _falls(signal, [burst])
     assert noise * 8 > np.median(falls)
@@ -216,7 +216,7 @@ def test_the_estimate_of_rises_of_unequal_height_has_students_interval_and_one_s
 
 
 def test_parts_are_judged_one_by_one_at_their_common_interval() -> None:
-    t = np.arange(4000) * 1e-3
+    t = np.arange(4000.0) * 1e-3
     rng = np.random.default_rng(4)
     noisy = [0.01 * rng.standard_normal(t.size) for _ in range(2)]
     slipping = 1 + 0.25 * ((8 * t + 0.3) % 1) + noisy[0]
@@ -232,7 +232,7 @@ def test_parts_are_judged_one_by_one_at_their_common_interval() -> None:
 
 
 def test_the_smallest_fall_that_counts_must_be_positive_and_is_inclusive_of_none_below() -> None:
-    t = np.arange(4000) * 1e-3
+    t = np.arange(4000.0) * 1e-3
     force = 1 + 0.25 * ((8 * t + 0.3) % 1) + 0.01 * np.random.default_rng(5).standard_normal(t.size)
     with raises(InvalidInput, match="minimum_drop must be positive"):
         estimate_stick_slip(time=t, friction_force=force, minimum_drop=0.0)

@@ -146,7 +146,7 @@ def burst(start: float, end: float, slips: list[float]) -> StickSlipEstimate:
 
 
 def test_the_teeth_of_a_burst_rise_from_minus_to_plus_a_half_between_its_slips() -> None:
-    t = np.arange(20) + 0.5
+    t = np.arange(20.0) + 0.5
     # slips at 6, 10 and 12: mean gap 3, so that the burst is from 3 to 15; that at 17 is beyond its end
     teeth, within = _burst_columns(t, burst(3.0, 12.0, [6.0, 10.0, 12.0, 17.0]))
     third, quarter, half = (np.arange(3) + 0.5) / 3 - 0.5, (np.arange(4) + 0.5) / 4 - 0.5, np.array([-0.25, 0.25])
@@ -158,11 +158,11 @@ def test_the_teeth_of_a_burst_rise_from_minus_to_plus_a_half_between_its_slips()
 
 
 def test_a_burst_shifts_a_level_where_a_twentieth_is_within_it_and_without() -> None:
-    t = np.arange(100) + 0.5
+    t = np.arange(100.0) + 0.5
 
     def shifts(first: float, last: float) -> int:
         slips = np.arange(first + 1, last + 0.01)
-        return _burst_columns(t, burst(first, last, slips.tolist()))[1].shape[1]
+        return int(_burst_columns(t, burst(first, last, slips.tolist()))[1].shape[1])
 
     assert shifts(10.0, 16.0) == 1  # seven samples, with the stick phase after the last slip
     assert shifts(10.0, 13.0) == 0  # four

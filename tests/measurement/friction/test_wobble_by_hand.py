@@ -88,7 +88,7 @@ def test_a_wobble_that_improves_seven_tenths_of_the_time_is_coherent() -> None:
 
     def coherent(shares: list[bool]) -> bool:
         """Whether a wave in some of ten equal pieces, the others holding its opposite by a quarter, is one wobble."""
-        t = np.arange(1000) * STEP  # 20 s, 14 turns
+        t = np.arange(1000.0) * STEP  # 20 s, 14 turns
         sign = np.repeat(np.where(shares, 1.0, -0.25), 100)
         parts = [t[:100], t[100:]]  # the shorter one sets the size of a piece
         force = sign * np.cos(2 * np.pi * 0.7 * t) + 1e-6 * rng.standard_normal(1000)
@@ -117,7 +117,7 @@ def test_of_subharmonics_that_explain_as_much_the_fastest_is_the_rotation() -> N
 
 
 def test_a_recording_too_short_for_two_turns_at_its_rate_has_no_rotation() -> None:
-    t = np.arange(12) * 0.1
+    t = np.arange(12.0) * 0.1
     assert find_rotation_speed([t], [np.cos(2 * np.pi * t)], harmonics=3) is None
 
 

@@ -111,7 +111,7 @@ NORMAL = {
 
 def test_a_normal_mode_has_its_mass_and_half_of_a_hysteretic_loss_factor() -> None:
     mode = _universal_mode(NORMAL)
-    assert (mode.frequency, mode.mass, mode.damping, mode.skew) == (120.0, 2.5, approx(0.03), 0.0)
+    assert (mode.frequency, mode.mass, mode.damping, mode.skew) == approx((120.0, 2.5, 0.03, 0.0))
     assert mode.node.tolist() == [4, 9]
     assert mode.shape.tolist() == [[1, 3, 5], [2, 4, 6]]
     viscous = _universal_mode(NORMAL | {"modal_damp_vis": 0.01})
@@ -154,12 +154,12 @@ def test_positions_and_units_are_those_of_the_file() -> None:
     assert {number: row.tolist() for number, row in nodes.items()} == {3: [1, 3, 5], 8: [2, 4, 6]}
     with raises(ValueError, match="a node is not finite"):
         _positions({"node_nums": [3.0], "x": [np.nan], "y": [3], "z": [5]})
-    assert _own_scales([{"length": 1000.0, "force": 4.0}]) == (approx(1e-3), approx(0.25))
+    assert _own_scales([{"length": 1000.0, "force": 4.0}]) == approx((1e-3, 0.25))
     assert _own_scales([]) is None
     for factor in (0.0, -1.0, 1e13, np.nan):
         with raises(ValueError, match="is none between units"):
             _own_scales([{"length": factor, "force": 1.0}])
-    assert UnitSystem(length_unit="mm", force_unit="kN").scales == (approx(1e-3), approx(1e3))
+    assert UnitSystem(length_unit="mm", force_unit="kN").scales == approx((1e-3, 1e3))
 
 
 def test_a_node_that_a_mode_leaves_out_does_not_move_in_it_and_masses_are_of_force_over_acceleration(

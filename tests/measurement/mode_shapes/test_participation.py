@@ -1,5 +1,7 @@
 """Places, directions, participations and static corrections of three modes at four nodes, by hand."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from pytest import approx, raises
@@ -29,7 +31,7 @@ SHAPE = np.array(
 
 
 def modes(**changed: np.ndarray) -> ModeShapes:
-    values = {
+    values: dict[str, Any] = {
         "natural_frequency": np.array([0.0, 100.0, 300.0]),
         "damping_ratio": np.array([np.nan, 0.01, np.nan]),
         "modal_mass": np.array([4.0, 9.0, np.nan]),

@@ -222,9 +222,7 @@ def test_factors_of_a_plan_have_counts_of_their_own_and_voltages_scale_the_ampli
     with raises(InvalidInput, match=r"^vibration and voltage both set the amplitude; give one$"):
         factors(vibration="1um", voltage="3V")
     bare: Any = SimpleNamespace(**(vars(INPUTS) | {"voltage_peak_to_peak": None}))
-    with raises(
-        InvalidInput, match=r"^voltage needs the rig's drive\.voltage_peak_to_peak to scale by"
-    ):
+    with raises(InvalidInput, match=r"^voltage needs the rig's drive\.voltage_peak_to_peak to scale by"):
         plan._amplitudes(bare, None, "3V")
 
 
