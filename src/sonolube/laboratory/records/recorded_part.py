@@ -333,8 +333,7 @@ def switched_recording(folder: Path) -> "xr.Dataset":
     if not any("voltage_peak_to_peak" in part for part in chosen):
         raise InvalidInput(f"{folder}: its vibration is never switched on; run the protocol decay_length_run")
     undriven = [
-        part if "voltage_peak_to_peak" in part else part.assign(voltage_peak_to_peak=0 * part["normal_load_set"])
-        for part in chosen
+        part if _VOLTAGE in part else part.assign({_VOLTAGE: ("time", np.zeros(part.sizes["time"]))}) for part in chosen
     ]
     for part in undriven:
         part["voltage_peak_to_peak"].attrs["units"] = "V"
