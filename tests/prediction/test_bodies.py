@@ -62,7 +62,9 @@ def test_without_any_property_the_catalogue_s_yield_strength_counts_and_else_not
 
 def test_materials_that_the_catalogue_lacks_or_that_are_not_named_are_left_out() -> None:
     rig = read_rig(RIGS / "poisson_steel_steel.toml")
-    assert [each.name for each in named_bodies(replace(rig, pin_material="unobtainium", disc_material="m50"))] == ["m50"]
+    assert [each.name for each in named_bodies(replace(rig, pin_material="unobtainium", disc_material="m50"))] == [
+        "m50"
+    ]
     assert [each.name for each in named_bodies(replace(rig, pin_material=None, disc_material="m50"))] == ["m50"]
 
 

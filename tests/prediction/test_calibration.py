@@ -136,9 +136,7 @@ def test_coverage_widths_and_scores_are_those_of_even_draws() -> None:
 
 def test_the_probability_of_a_coverage_is_that_of_the_binomial_distribution() -> None:
     # 0 of 3 within 80 %: 0.2^3, and no other outcome is as improbable
-    off = Calibration(
-        name="off", predictions=tuple(replace(one, friction_ratio=9.0) for one in scored().predictions)
-    )
+    off = Calibration(name="off", predictions=tuple(replace(one, friction_ratio=9.0) for one in scored().predictions))
     assert off.covered(0.8) == 0
     assert off.p_value(0.8) == approx(0.008)
 

@@ -139,7 +139,9 @@ def test_the_distance_from_the_tests_is_that_beyond_each_end_in_logarithms(
 
 
 @mark.parametrize(("amplitude", "is_said"), [(12.0e-6, False), (12.1e-6, True)])
-def test_an_amplitude_is_beyond_the_tests_from_a_twentieth_more_decay_lengths_on(amplitude: float, is_said: bool) -> None:
+def test_an_amplitude_is_beyond_the_tests_from_a_twentieth_more_decay_lengths_on(
+    amplitude: float, is_said: bool
+) -> None:
     # 11.46 um over 2 um are 5.73 decay lengths, with the twentieth 6.017; 12.0 um are 6.00 and 12.1 um 6.05 of them
     found = large_amplitude_caveats(resolved_rig(read_rig(RIG)), vibration_amplitude=amplitude)
     assert bool(found) == is_said

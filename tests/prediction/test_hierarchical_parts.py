@@ -140,8 +140,7 @@ def test_a_closure_that_is_linear_in_both_logarithms_has_normally_distributed_te
 ) -> None:
     # R = ln theta + 0.8 ln(l/a): theta and l/a lognormal between rigs, hardly any discrepancy
     closure = replace(
-        LINEAR,
-        ratio=lambda logs, at: np.asarray(logs) + 0.8 * np.log(at.decay_length / at.vibration_amplitude),
+        LINEAR, ratio=lambda logs, at: np.asarray(logs) + 0.8 * np.log(at.decay_length / at.vibration_amplitude)
     )
     mean = 0.5 + 0.8 * (shift + np.log([1.0, 0.5]))
     rig = measured_rig(list(mean + np.array([0.2, 0.0])), conditions([1e-6, 2e-6], [0.02, 0.03]))

@@ -171,10 +171,7 @@ def test_a_prediction_without_runs_has_the_numbers_of_its_rig() -> None:
 
 def test_the_run_that_contradicts_most_is_named_with_what_was_predicted() -> None:
     found = attributes(
-        ratios=[0.5, 1.2, 0.05],
-        probability=0.002,
-        lows=np.array([0.2, 0.3, 0.4]),
-        highs=np.array([0.6, 0.7, 0.8]),
+        ratios=[0.5, 1.2, 0.05], probability=0.002, lows=np.array([0.2, 0.3, 0.4]), highs=np.array([0.6, 0.7, 0.8])
     )
     assert found["contradiction"].startswith(
         "Your runs contradict every model (probability 0.002): ratio 1.20 where 0.30 to 0.70 (95 %) was predicted;"
@@ -189,13 +186,12 @@ def test_the_run_that_contradicts_most_is_named_with_what_was_predicted() -> Non
 
 def test_each_run_that_disagrees_with_the_others_is_named_by_its_number() -> None:
     found = attributes(
-        ratios=[0.5, 0.42, 0.9],
-        left_out=np.array([0.47, 0.44, 0.46]),
-        outlier_probability=np.array([0.9, 0.8, 0.003]),
+        ratios=[0.5, 0.42, 0.9], left_out=np.array([0.47, 0.44, 0.46]), outlier_probability=np.array([0.9, 0.8, 0.003])
     )
     (line,) = (each for each in found["caveats"].split("\n") if "disagrees" in each)
     assert line == (
-        "run 3 disagrees with the others: ratio 0.90 where they give 0.46 (probability 0.003); it counts less: repeat it"
+        "run 3 disagrees with the others: ratio 0.90 where they give 0.46 (probability 0.003); it counts less:"
+        " repeat it"
     )
 
 

@@ -51,7 +51,9 @@ def variant(ratio: object, *parameters: FreeParameter, **more: object) -> ModelV
 
 
 LINEAR = variant(lambda test, slope: slope * test.x, parameter())
-LINE = variant(lambda test, slope, level: slope * test.x + level, parameter(), parameter("level", initial_values=(0.0,)))
+LINE = variant(
+    lambda test, slope, level: slope * test.x + level, parameter(), parameter("level", initial_values=(0.0,))
+)
 
 
 def slope_of(tests: tuple[Measured, ...]) -> float:

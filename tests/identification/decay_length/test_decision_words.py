@@ -38,7 +38,10 @@ def decided(
     length = 1e-6 * np.column_stack([np.ones(101), growth * spread[:, 0]])
     amplitude = 2e-6 * np.column_stack([np.ones(101), spread[:, 0] / fall])
     model = SimpleNamespace(
-        channels=(SimpleNamespace(name="friction_ratio", values=np.zeros(4)), SimpleNamespace(name="stack_current", values=np.zeros(2))),
+        channels=(
+            SimpleNamespace(name="friction_ratio", values=np.zeros(4)),
+            SimpleNamespace(name="stack_current", values=np.zeros(2)),
+        ),
         residuals=lambda deviates: np.concatenate([np.zeros(4), np.full(2, misfit)])[None],
         fitted=lambda mode: {"friction_ratio": mode},
     )
@@ -90,7 +93,7 @@ def test_a_change_explains_the_sets_from_a_third_of_their_difference_on(
     name: str, change: str, factor: float, is_decided: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # (2/0.7)^(1/3) = 1.419
-    found = decided(monkeypatch, {name: 0.97, "none": 0.03}, **{change: factor})  # type: ignore[arg-type]
+    found = decided(monkeypatch, {name: 0.97, "none": 0.03}, **{change: factor})
     assert found.decided == is_decided
     if not is_decided:
         assert f"{factor:.2f}, too little for the 2.9 between the published sets" in found.verdict

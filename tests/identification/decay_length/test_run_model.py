@@ -239,7 +239,9 @@ def test_the_large_drive_follows_the_fall_of_the_vibration_only_where_it_is_said
     for follows in (True, False):
         changes = Changes(grows=False, falls=True, drifts=False, follows=follows)
         model = RunModel(table, known, changes, channels=run_channels(table, known))
-        row = deviates(model, decay_length=np.log(0.8e-6), growth=0.0, fall=0.9, large_drive=np.log(2e-6), shift_scale=2.0)
+        row = deviates(
+            model, decay_length=np.log(0.8e-6), growth=0.0, fall=0.9, large_drive=np.log(2e-6), shift_scale=2.0
+        )
         found = model.predicted(row)
         shares.append(found["large_drive_shift"][0] / found["small_drive_shift"][0])
         assert_allclose(found["small_drive_shift"][0], np.exp(2.0))  # over that at the beginning, times its scale
@@ -275,7 +277,7 @@ def test_channels_hold_the_readings_in_the_units_of_the_model_with_their_free_le
         "friction_ratio", "stack_current", "small_drive_shift", "large_drive_shift"
     ]  # fmt: skip
     assert [each.level for each in (ratio, current, small, large)] == [0.1, 10.0, 0.0, 0.0]
-    assert_allclose(current.values, np.log(table.stack_current))
+    assert_allclose(np.exp(current.values), 0.4 + 0.05 * np.sin(S))
     known = np.delete(shift, 3)
     assert_allclose(small.values, known * (1 + known / 80))
     assert small.rows.tolist() == [row for row in range(S.size) if row != 3]

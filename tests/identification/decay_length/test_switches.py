@@ -191,7 +191,9 @@ def test_an_alternating_current_counts_by_its_amplitude_and_a_rectified_one_by_i
     assert table.stack_current_uncertainty is not None
     assert np.all(table.stack_current_uncertainty < 0.01)
     data["stack_current"] = ("time", np.where(on, 0.3 + 0.3 * np.sin(2 * np.pi * 1.37 * t), 0.0))
-    assert recorded_switches(data, sliding_speed=SPEED, rotation_speed=0.41).stack_current == approx(np.full(STAGES - 1, 0.3), rel=0.02)
+    assert recorded_switches(data, sliding_speed=SPEED, rotation_speed=0.41).stack_current == approx(
+        np.full(STAGES - 1, 0.3), rel=0.02
+    )
 
 
 @pytest.mark.parametrize(("drive", "enters"), [(1.9, True), (2.1, False)])
@@ -213,9 +215,13 @@ def test_the_distance_is_that_of_the_set_speed_and_stands_still_while_nothing_is
     t = data["time"].to_numpy()
     lifted = data["normal_load"].to_numpy() == 0
     data["sliding_speed_set"] = ("time", np.where(lifted, 0.0, 0.13))
-    assert recorded_switches(data, sliding_speed=SPEED, rotation_speed=0.41).sliding_distance == approx(10.0 * np.arange(1, STAGES), abs=0.2)
+    assert recorded_switches(data, sliding_speed=SPEED, rotation_speed=0.41).sliding_distance == approx(
+        10.0 * np.arange(1, STAGES), abs=0.2
+    )
     late = recording().assign_coords(time=np.where(t < 100, t, t + 500.0))
-    assert recorded_switches(late, sliding_speed=SPEED, rotation_speed=0.41).sliding_distance == approx(5.0 * np.arange(1, STAGES), abs=0.1)
+    assert recorded_switches(late, sliding_speed=SPEED, rotation_speed=0.41).sliding_distance == approx(
+        5.0 * np.arange(1, STAGES), abs=0.1
+    )
 
 
 def test_a_load_that_is_never_positive_is_refused() -> None:

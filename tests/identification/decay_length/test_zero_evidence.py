@@ -17,10 +17,10 @@ ZERO = np.array([0.01, -0.02, 0.05, 0.04, 0.09, 0.08, 0.13, 0.11, 0.14])
 
 def table(zero: np.ndarray = ZERO, *, ratio: float = 0.55, uncertainty: float | None = NOISE) -> SwitchTable:
     true = np.where(np.isfinite(zero), zero, 0.0)
-    stated = {} if uncertainty is None else {"force_zero_uncertainty": np.full(S.size, uncertainty)}
+    stated = None if uncertainty is None else np.full(S.size, uncertainty)
     return SwitchTable(
         sliding_distance=S, friction_force=ratio * FORCE + true, intrinsic_friction_force=FORCE + true,
-        force_zero=zero, **stated,
+        force_zero=zero, force_zero_uncertainty=stated,
     )  # fmt: skip
 
 
@@ -32,7 +32,9 @@ def by_hand() -> tuple[float, np.ndarray]:
     """
     gaps = np.abs(S[:, None] - S) / S[-1]
     white = NOISE**2 * np.eye(S.size)
-    noises = [white + (w * FORCE) ** 2 * np.exp(-gaps / length) for w in (0.005, 0.015, 0.05) for length in (0.1, 0.3, 1.0)]
+    noises = [
+        white + (w * FORCE) ** 2 * np.exp(-gaps / length) for w in (0.005, 0.015, 0.05) for length in (0.1, 0.3, 1.0)
+    ]
     level = np.ones((S.size, 1))
     courses = [(1 - np.exp(-S / (r * S[-1]))) / (1 - np.exp(-1 / r)) for r in (0.05, 0.2, 0.5, 2.0)]
     shapes = [level, *(np.column_stack([level, course]) for course in courses)]
