@@ -22,6 +22,7 @@ from sonolube.measurement.statistics.log_parameter_fit import ConfidenceInterval
 from sonolube.models.actuator import PiezoStack
 
 MEASURED = np.array([1.0 + 1.0j, 2.0j, -4.0 + 0.0j])
+CAPACITIVE, INDUCTIVE = np.full(40, 1j), np.full(40, -1j)
 MODEL = np.array([2.0 + 2.0j, -2.0, -2.0])
 
 
@@ -39,7 +40,7 @@ def spectrum(*, impedance: Any = None, has_phase: bool = True, frequency: Any = 
     f = np.linspace(1e3, 1e4, 40) if frequency is None else np.asarray(frequency, float)
     return ImpedanceSpectrum(
         frequency=f,
-        impedance=np.asarray(1 / (2j * np.pi * f * 1e-8) if impedance is None else impedance),
+        impedance=np.asarray(1 / (2j * np.pi * f * 1e-8) if impedance is None else impedance, complex),
         has_phase=has_phase,
     )
 
@@ -75,16 +76,16 @@ def test_an_inductive_part_above_a_twentieth_of_the_points_is_named(count: int, 
     # of 40 points two are a twentieth; inductive is a positive reactance
     f = np.linspace(1e3, 1e4, 40)
     reactance = np.where(np.arange(40) >= 40 - count, 1.0, -1.0)
-    found = inductive_caveats(spectrum(impedance=10 + 1j * reactance), np.full(40, 1j))
+    found = inductive_caveats(spectrum(impedance=10 + 1j * reactance), CAPACITIVE)
     assert bool(found) is is_said
     if is_said:
         assert f"inductive at 8% of the points, from {f[37]:.6g} to 10000 Hz" in found[0]
         # where the fit is inductive as well there is nothing to say, but for most points it is said in any case
-        assert inductive_caveats(spectrum(impedance=10 + 1j * reactance), np.full(40, -1j)) == ()
+        assert inductive_caveats(spectrum(impedance=10 + 1j * reactance), INDUCTIVE) == ()
     mostly = np.where(np.arange(40) >= 40 - 21, 1.0, -1.0)
-    assert inductive_caveats(spectrum(impedance=10 + 1j * mostly), np.full(40, -1j))
+    assert inductive_caveats(spectrum(impedance=10 + 1j * mostly), INDUCTIVE)
     half = np.where(np.arange(40) >= 20, 1.0, -1.0)
-    assert inductive_caveats(spectrum(impedance=10 + 1j * half), np.full(40, -1j)) == ()
+    assert inductive_caveats(spectrum(impedance=10 + 1j * half), INDUCTIVE) == ()
 
 
 @mark.parametrize("points", [301, 9001])
@@ -98,9 +99,9 @@ def test_a_magnitude_has_the_phase_of_the_only_circuit_without_delay_that_has_it
     inner = (f > 12e3) & (f < 45e3)
     assert np.max(np.abs(np.angle(found[inner] / admittance[inner]))) < 0.04
     assert np.max(np.abs(np.angle(found))) <= np.pi / 2 + 1e-12
-    silent = ImpedanceSpectrum(frequency=f, impedance=np.abs(1 / admittance).astype(complex), has_phase=False)
+    silent = spectrum(frequency=f, impedance=np.abs(1 / admittance), has_phase=False)
     assert admittance_with_phase(silent) == approx(found)
-    told = ImpedanceSpectrum(frequency=f, impedance=1 / admittance)
+    told = spectrum(frequency=f, impedance=1 / admittance)
     assert admittance_with_phase(told) == approx(admittance)
 
 

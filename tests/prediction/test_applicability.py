@@ -1,4 +1,4 @@
-"""Limits of a prediction: direction, soft bodies, lubricants, frequencies and ranges; its interval; heat of a contact."""
+"""Limits of a prediction: direction, soft bodies, lubricants, frequencies, ranges; its interval; heat of a contact."""
 
 from dataclasses import replace
 from math import pi, sqrt

@@ -190,7 +190,8 @@ def test_each_run_that_disagrees_with_the_others_is_named_by_its_number() -> Non
     )
     (line,) = (each for each in found["caveats"].split("\n") if "disagrees" in each)
     assert line == (
-        "run 3 disagrees with the others: ratio 0.90 where they give 0.46 (probability 0.003); it counts less: repeat it"
+        "run 3 disagrees with the others: ratio 0.90 where they give 0.46 (probability 0.003); it counts less:"
+        " repeat it"
     )
 
 

@@ -1,6 +1,8 @@
 """Map of previous studies: published numbers and axes."""
 
-from sonolube.charts import Points, draw_chart
+from pytest import approx
+
+from sonolube.charts import Line, Note, Panel, Points, Zone, draw_chart
 from sonolube.figure import publication_style
 from sonolube.validation.previous_study_map import StudyPoint, study_chart, study_points
 
@@ -30,3 +32,65 @@ def test_the_map_has_units_on_both_axes_and_a_point_of_the_users_own() -> None:
     (own,) = (part for part in chart.panels[1].parts if isinstance(part, Points) and part.label == "own rig")
     assert own.shades is not None
     assert (own.x.item(), own.y.item(), own.shades.item()) == (0.05, 1e6, 50.0)
+
+
+def test_tests_of_the_dissertation_stand_at_their_pressures_and_reductions() -> None:
+    # D Tables 2.3, 3.2: 3 N on 2.25 mm2; Table 4.2: 5 N; reductions 1 - 0.379/1.024 and 95.5 % at 25.9 V
+    points = {point.label: point for point in study_points()}
+    slow = points["D 2.3.4, slow"]
+    assert slow.friction_reduction == approx(1 - 0.379 / 1.024)
+    assert slow.nominal_pressure == approx(3 / 2.25e-6)
+    assert slow.sliding_speed == approx((20.3e-3, 20.3e-3))
+    assert (slow.direction, slow.source) == ("perpendicular", "friction test A-1")
+    assert points["D 4.1.2, 25.9 V"].friction_reduction == approx(0.955, abs=1e-3)
+    assert sum(label.startswith("D ") for label in points) == 5
+
+
+def placed(*others: StudyPoint) -> tuple[Panel, Panel]:
+    aside, known = study_chart(others=others).panels
+    return aside, known
+
+
+def study(label: str, **changes: object) -> StudyPoint:
+    given: dict[str, object] = {
+        "direction": "transverse", "friction_reduction": 0.4, "sliding_speed": (0.05, 0.05), "nominal_pressure": 1e6
+    }  # fmt: skip
+    return StudyPoint(label=label, **(given | changes))  # type: ignore[arg-type]
+
+
+def test_a_range_of_speeds_is_a_line_to_its_fastest_and_begins_within_the_axis() -> None:
+    _, before = placed()
+    _, known = placed(study("ranged", sliding_speed=(0.0, 0.3)), study("single"))
+    new = [part for part in known.parts if isinstance(part, Line)][
+        len([p for p in before.parts if isinstance(p, Line)]) :
+    ]
+    (line,) = new
+    assert line.x.tolist() == approx([1e-4, 0.3])
+    assert line.y.tolist() == approx([1e6, 1e6])
+
+
+def test_unknown_pressures_are_in_the_band_and_studies_without_speed_beside_the_map() -> None:
+    aside, known = placed(study("no pressure", nominal_pressure=None), study("neither", sliding_speed=None))
+    band = next(part for part in known.parts if isinstance(part, Zone))
+    notes = {part.text.split(",")[0]: part for part in known.parts if isinstance(part, Note)}
+    assert band.first[0] < notes["no pressure"].y < band.last[0]
+    assert notes["no pressure"].y == approx(5.5e3)  # above those of the package
+    littmann = next(part for text, part in notes.items() if text.startswith("Littmann"))
+    assert littmann.y == approx(2.6e3)
+    assert notes["no pressure"].text == "no pressure, 40 %"
+    besides = [part for part in aside.parts if isinstance(part, Note)]
+    assert [part.y for part in besides] == approx([-float(row) for row in range(len(besides))])
+    assert any(part.text.startswith("neither, 40 %") for part in besides)
+    rings = [part for panel in (aside, known) for part in panel.parts if isinstance(part, Points) and part.is_hollow]
+    assert [ring.x.size for ring in rings] == [1, 1]
+
+
+def test_an_additional_point_needs_speed_and_pressure() -> None:
+    for lacking in ({"sliding_speed": None}, {"nominal_pressure": None}):
+        parts = study_chart(study("added", **lacking)).panels[1].parts
+        assert not any(isinstance(part, Points) and part.label == "added" for part in parts)
+    whole = study_chart(study("added")).panels[1].parts
+    (point,) = (part for part in whole if isinstance(part, Points) and part.label == "added")
+    assert point.shades is not None
+    assert point.shades.tolist() == approx([40.0])
+    assert point.scale_ends == (0.0, 100.0)

@@ -163,7 +163,7 @@ def test_unknown_amplitudes_are_in_proportion_to_the_voltage_or_those_of_the_rig
         own=4e-6, volts=20.0,
     )  # fmt: skip
     assert found == approx([1e-6, 1e-6, 4e-6])
-    with raises(InvalidInput, match="no drive.voltage_peak_to_peak to scale them by"):
+    with raises(InvalidInput, match=r"no drive\.voltage_peak_to_peak to scale them by"):
         known_amplitudes(np.array([np.nan]), np.array([5.0]), np.array([True]), own=4e-6, volts=None)
     assert known_amplitudes(np.array([np.nan]), np.array([np.nan]), np.array([True]), own=4e-6, volts=None) == approx(
         [4e-6]
@@ -173,7 +173,7 @@ def test_unknown_amplitudes_are_in_proportion_to_the_voltage_or_those_of_the_rig
 @pytest.mark.parametrize("name", ["vibration_velocity", "frequency", "sliding_speed", "normal_load"])
 def test_a_setting_that_is_not_positive_is_refused_with_its_run(name: str) -> None:
     with raises(InvalidInput, match=f"own: {name} of run 2 must be positive"):
-        table(friction_reduction=[0.5, 0.4, 0.3], **{name: [1.0, 0.0, -1.0]})
+        table(None, friction_reduction=[0.5, 0.4, 0.3], **{name: [1.0, 0.0, -1.0]})
 
 
 def test_a_thousand_runs_are_fitted_and_one_more_is_refused() -> None:

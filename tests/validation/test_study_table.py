@@ -1,5 +1,7 @@
 """Earlier studies as a table: written in the columns of runs, read again, extended by own ones, drawn on the map."""
 
+import csv
+import io
 from pathlib import Path
 
 import pytest
@@ -78,3 +80,49 @@ def test_points_without_a_source_or_a_number_are_refused_in_one_line(
     with pytest.raises(error, match=message) as refusal:
         read_studies(written(tmp_path, OWN.format(row)))
     assert "\n" not in str(refusal.value)
+
+
+def rows_of_the_package() -> dict[str, dict[str, str]]:
+    rows = list(csv.reader(io.StringIO(study_table())))
+    names = [column.name for column in STUDY_COLUMNS]
+    return {row[names.index("study")]: dict(zip(names, row, strict=True)) for row in rows[1:]}
+
+
+def test_cells_are_in_the_units_of_their_headings_and_empty_where_nothing_is_printed() -> None:
+    rows = rows_of_the_package()
+    fast = rows["Dong 2015, A-3"]  # D Table 2.3: 87 mm/s, 3 N, 2.5 um, 22 kHz
+    headings = dict(
+        zip([column.name for column in STUDY_COLUMNS], study_table().split("\n")[0].split(","), strict=True)
+    )
+    assert headings["sliding_speed"] == "sliding_speed [mm/s]"
+    assert float(fast["sliding_speed"]) == approx(87)
+    assert float(fast["normal_load"]) == approx(3)
+    assert float(fast["friction_reduction"]) == approx(100 * (1 - 1.041 / 1.472), rel=1e-4)
+    assert fast["nominal_pressure"] == fast["lowest_speed"] == ""
+    assert fast["source"] == "D, steel on aluminium, three speeds (Table 2.3)"
+    littmann = rows["Littmann et al."]
+    assert (float(littmann["lowest_speed"]), float(littmann["sliding_speed"])) == (0.0, 500.0)
+    assert littmann["source"].startswith("D 1.3.1, its references ")
+    assert rows["Dong 2015, D-1"]["friction_reduction_uncertainty"] == ""
+    assert sum(name.startswith("Dong 2015, ") for name in rows) == 17
+
+
+def test_a_stated_pressure_goes_before_load_over_area_and_a_range_has_two_speeds(tmp_path: Path) -> None:
+    head = (
+        "study,direction,lowest_speed [mm/s],sliding_speed [mm/s],normal_load [N],nominal_area [mm2],"
+        "nominal_pressure [MPa],friction_ratio,source\n"
+    )
+    rows = "Mine,transverse,20,50,10,4,7,0.6,p. 3\nMine,transverse,,50,10,4,,0.5,p. 3\n"
+    (ranged, single), _ = read_studies(written(tmp_path, head + rows))
+    assert ranged.sliding_speed == approx((0.02, 0.05))
+    assert ranged.nominal_pressure == approx(7e6)
+    assert ranged.source == "p. 3"
+    assert single.sliding_speed == approx((0.05, 0.05))
+    assert single.nominal_pressure == approx(2.5e6)
+
+
+def test_a_point_of_the_package_is_left_out_and_the_same_study_with_another_reduction_is_not(tmp_path: Path) -> None:
+    head = "study,direction,sliding_speed [mm/s],friction_ratio,source\n"
+    rows = "Gutowski and Leus,longitudinal,0.62,0.1,D\nGutowski and Leus,longitudinal,0.62,0.3,own reading\n"
+    points, _ = read_studies(written(tmp_path, head + rows))
+    assert [point.friction_reduction for point in points] == approx([0.7])

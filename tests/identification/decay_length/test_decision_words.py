@@ -93,7 +93,7 @@ def test_a_change_explains_the_sets_from_a_third_of_their_difference_on(
     name: str, change: str, factor: float, is_decided: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # (2/0.7)^(1/3) = 1.419
-    found = decided(monkeypatch, {name: 0.97, "none": 0.03}, **{change: factor})  # type: ignore[arg-type]
+    found = decided(monkeypatch, {name: 0.97, "none": 0.03}, **{change: factor})
     assert found.decided == is_decided
     if not is_decided:
         assert f"{factor:.2f}, too little for the 2.9 between the published sets" in found.verdict

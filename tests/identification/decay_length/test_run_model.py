@@ -277,7 +277,7 @@ def test_channels_hold_the_readings_in_the_units_of_the_model_with_their_free_le
         "friction_ratio", "stack_current", "small_drive_shift", "large_drive_shift"
     ]  # fmt: skip
     assert [each.level for each in (ratio, current, small, large)] == [0.1, 10.0, 0.0, 0.0]
-    assert_allclose(current.values, np.log(table.stack_current))
+    assert_allclose(np.exp(current.values), 0.4 + 0.05 * np.sin(S))
     known = np.delete(shift, 3)
     assert_allclose(small.values, known * (1 + known / 80))
     assert small.rows.tolist() == [row for row in range(S.size) if row != 3]

@@ -17,10 +17,10 @@ ZERO = np.array([0.01, -0.02, 0.05, 0.04, 0.09, 0.08, 0.13, 0.11, 0.14])
 
 def table(zero: np.ndarray = ZERO, *, ratio: float = 0.55, uncertainty: float | None = NOISE) -> SwitchTable:
     true = np.where(np.isfinite(zero), zero, 0.0)
-    stated = {} if uncertainty is None else {"force_zero_uncertainty": np.full(S.size, uncertainty)}
+    stated = None if uncertainty is None else np.full(S.size, uncertainty)
     return SwitchTable(
         sliding_distance=S, friction_force=ratio * FORCE + true, intrinsic_friction_force=FORCE + true,
-        force_zero=zero, **stated,
+        force_zero=zero, force_zero_uncertainty=stated,
     )  # fmt: skip
 
 
