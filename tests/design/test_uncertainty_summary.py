@@ -138,7 +138,9 @@ def test_bars_of_indices_stand_in_rising_order_with_their_intervals() -> None:
     assert isinstance(first, Bars)
     assert isinstance(total, Bars)
     assert panel.y.words == ("small", "large")
-    assert np.array([first.lengths, total.lengths]) == approx(np.array([[10.0, 50.0], [20.0, 80.0]]))
-    assert np.array([first.places, total.places]) == approx(np.array([[0.2, 1.2], [-0.2, 0.8]]))
+    assert first.lengths == approx([10.0, 50.0])
+    assert total.lengths == approx([20.0, 80.0])
+    assert first.places == approx([0.2, 1.2])
+    assert total.places == approx([-0.2, 0.8])
     assert np.asarray(first.error) == approx(np.array([[10.0, 10.0], [20.0, 5.0]]))
     assert np.asarray(total.error) == approx(np.array([[0.0, 10.0], [20.0, 10.0]]))  # a limit beyond its estimate

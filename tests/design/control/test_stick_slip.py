@@ -119,8 +119,11 @@ def test_the_closed_loop_is_drawn_with_its_target_limit_and_frequencies() -> Non
     force, target = friction.parts
     assert isinstance(force, Line)
     assert isinstance(target, Line)
-    assert (force.x, force.y, force.label) == (approx([0, 10, 20]), approx([2.0, 1.4, 1.1]), "friction")
-    assert (target.y, target.is_stepped) == (approx([2.0, 1.0, 1.0]), True)
+    assert force.x == approx([0, 10, 20])
+    assert force.y == approx([2.0, 1.4, 1.1])
+    assert force.label == "friction"
+    assert target.y == approx([2.0, 1.0, 1.0])
+    assert target.is_stepped
     level, limit = drive.parts
     assert isinstance(level, Line)
     assert isinstance(limit, Rule)
@@ -130,7 +133,8 @@ def test_the_closed_loop_is_drawn_with_its_target_limit_and_frequencies() -> Non
     own, resonance = frequency.parts
     assert isinstance(own, Line)
     assert isinstance(resonance, Line)
-    assert (own.y, resonance.y) == (approx([22.0, 21.9, 21.8]), approx([22.0, 21.7, 21.6]))
+    assert own.y == approx([22.0, 21.9, 21.8])
+    assert resonance.y == approx([22.0, 21.7, 21.6])
     # from 21.6 to 22 kHz: a margin of a twentieth of the span
     assert (frequency.y.lowest, frequency.y.highest) == approx((21.8 - 0.22, 21.8 + 0.22))
     assert (friction.x.lowest, friction.x.highest) == approx((0.0, 20.0))
@@ -167,8 +171,10 @@ def test_the_design_is_drawn_by_its_map_and_its_sensitivity() -> None:
     assert isinstance(model, Line)
     assert isinstance(table, Line)
     assert isinstance(target, Points)
-    assert (model.x, model.y) == (approx([0.0, 10.0, 40.0]), approx([2.0, 1.5, 0.5]))
-    assert (table.x, table.y) == (approx([0.0, 20.0, 40.0]), approx([2.0, 1.2, 0.5]))
+    assert model.x == approx([0.0, 10.0, 40.0])
+    assert model.y == approx([2.0, 1.5, 0.5])
+    assert table.x == approx([0.0, 20.0, 40.0])
+    assert table.y == approx([2.0, 1.2, 0.5])
     assert (target.x[0], target.y[0]) == approx((25.0, 1.0))  # half of the way from 1.5 N to 0.5 N
     curve, peak, one = loop.parts
     assert isinstance(curve, Line)

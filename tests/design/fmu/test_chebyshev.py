@@ -55,6 +55,8 @@ def test_convergence_is_judged_by_the_last_two_coefficients_of_each_variable() -
     flat = ChebyshevTable(ends=((0.0, 1.0), (2.0, 2.0)), coefficients=coefficients)
     assert unconverged(flat) == approx([0.5, 0.0])
     assert unconverged(ChebyshevTable(ends=((0.0, 1.0),), coefficients=np.zeros(4))) == approx([0.0])
+    even = ChebyshevTable(ends=((0.0, 1.0),), coefficients=np.array([8.0, 0.0, 4.0, 0.0, -1.0]))
+    assert unconverged(even) == approx([1 / 8])
 
 
 def test_too_few_nodes_become_half_as_many_again() -> None:

@@ -120,7 +120,9 @@ def test_the_front_is_drawn_over_the_feasible_designs_with_its_ends_named() -> N
 def test_an_axis_of_the_front_leaves_a_margin_and_is_logarithmic_beyond_a_factor_of_five() -> None:
     # ends of 4 and 9: a reach of 1.5, below by its root
     axis = _front_axis("power", np.array([9.0, 4.0]))
-    assert (axis.lowest, axis.highest, axis.logarithmic) == (approx(4 / 1.5**0.5), approx(13.5), False)
+    assert axis.lowest == approx(4 / 1.5**0.5)
+    assert axis.highest == approx(13.5)
+    assert not axis.logarithmic
     narrow = _front_axis("heat", np.array([10.0, 10.1]))
     assert (narrow.lowest, narrow.highest) == approx((10 / 1.15**0.5, 10.1 * 1.15))
     assert _front_axis("voltage", np.array([1.0, 4.0])).logarithmic  # from 0.71 to 8

@@ -164,10 +164,14 @@ def test_the_chart_shades_what_can_be_made_and_numbers_the_points_of_the_plan() 
     assert np.asarray(prediction.y_error) == approx(np.array([[0.2, 0.15], [0.4, 0.25]]))
     assert isinstance(one, Points)
     assert isinstance(other, Points)
-    assert (one.x, one.y, one.label) == (approx([0.86, 1.86]), approx([0.4, 0.3]), "one model")
-    assert (other.x, other.y) == (approx([1.14, 2.14]), approx([0.6, 0.5]))
+    assert one.x == approx([0.86, 1.86])
+    assert one.y == approx([0.4, 0.3])
+    assert one.label == "one model"
+    assert other.x == approx([1.14, 2.14])
+    assert other.y == approx([0.6, 0.5])
     assert isinstance(rule, Rule)
-    assert (rule.value, rule.along) == (approx(0.7), "y")
+    assert rule.value == approx(0.7)
+    assert rule.along == "y"
     assert (right.x.lowest, right.x.highest) == (0.5, 2.5)
     assert right.x.words == ("1\n50 mm/s\n2 µm\n4 N", "2\n100 mm/s\n1 µm\n2 N")
 
