@@ -3,10 +3,15 @@
 import numpy as np
 import pytest
 import xarray as xr
-from pytest import approx
+from pytest import approx, raises
 
+from sonolube.errors import InvalidInput
+from sonolube.measurement.friction.step_means import StepMeans
 from sonolube.measurement.friction.voltage_steps import (
     VoltageStep,
+    _reductions,
+    _slid,
+    _zero,
     friction_at_voltage_steps,
     rotation_speed_at_voltage_steps,
     voltage_envelope,
@@ -185,3 +190,68 @@ def test_the_speed_of_the_disc_is_found_in_the_friction() -> None:
     assert found == approx(1 / 1.34, rel=1e-3)
     noise = force + 0.03 * np.random.default_rng(4).standard_normal(t.size)
     assert rotation_speed_at_voltage_steps(time=t, friction_force=noise, voltage_peak_to_peak=volts) is None
+
+
+def test_an_envelope_needs_eight_samples_of_even_time_and_leaves_out_missing_ones() -> None:
+    t = seconds(1, 1000)
+    u = np.where(t < 0.5, 2.0, -1.0)
+    u[700:] = np.nan
+    found = voltage_envelope(time=t, stack_voltage=u, window_duration=0.009)  # nine samples: four on either side
+    assert found[:496] == approx(0.0)
+    assert found[496:504] == approx(3.0)
+    assert found[504:704] == approx(0.0)
+    assert np.isnan(found[704:]).all()
+    with raises(InvalidInput, match=r"window_duration of 0\.007 s holds 7 samples; at least 8 are needed"):
+        voltage_envelope(time=t, stack_voltage=u, window_duration=0.007)
+    assert voltage_envelope(time=t, stack_voltage=u, window_duration=0.008).size == 1000
+    with raises(InvalidInput, match="time must be evenly spaced"):
+        voltage_envelope(time=np.delete(t, 300), stack_voltage=np.delete(u, 300))
+
+
+def test_the_distance_slid_is_a_time_at_the_mean_speed_while_sliding() -> None:
+    t, v = np.array([0.0, 1.0, 3.0, 4.0, 6.0]), np.array([0.0, -2.0, np.nan, -2.0, -4.0])
+    # speeds 0, 2, 2, 2, 4: distances 0, 1, 5, 7, 13; mean while sliding 2.5
+    assert _slid(t, v) == approx(np.array([0, 1, 5, 7, 13]) / 2.5)
+    assert _slid(t + 3, 0 * t) == approx(t)
+
+
+def test_a_force_at_rest_is_a_zero_up_to_three_tenths_of_the_level_from_twenty_samples_on() -> None:
+    rest = 0.02 + 0.01 * np.tile([1.0, -1.0, -1.0, 1.0], 10)
+    mean, variance = _zero(rest, np.array([1.0, 0.5]))
+    assert mean == approx(0.02)
+    assert np.sqrt(variance) == approx(np.std(rest, ddof=1) / np.sqrt(40), rel=0.3)
+    assert _zero(rest[:19], np.array([1.0])) == (0.0, 0.0)
+    assert _zero(rest[:20], np.array([1.0]))[0] == approx(0.02)
+    assert _zero(rest + 0.27, np.array([1.0, 0.5]))[0] == approx(0.29)
+    assert _zero(rest + 0.29, np.array([1.0, 0.5])) == (0.0, 0.0)  # of a holder under tension
+    loud = 0.35 + 0.5 * np.tile([1.0, -1.0, -1.0, 1.0], 10)
+    assert _zero(loud, np.array([1.0]))[0] == approx(0.35)  # below its own scatter
+
+
+def test_a_reduction_is_against_the_weighted_levels_of_its_speed_with_the_covariance_of_all() -> None:
+    force = np.array([1.0, 1.2, 0.4, 2.0, 0.5])
+    covariance = np.diag([0.01, 0.02, 0.03, 0.04, 0.05]) + 0.001
+    means = StepMeans(friction_force=force, covariance=covariance)
+    without = np.array([True, True, False, True, False])
+    speeds = [0.02, 0.0205, 0.02, 0.06, 0.09]
+    found = _reductions(means, without, speeds, np.array([100, 300, 50, 80, 70]))
+    assert [found[k] for k in (0, 1, 3, 4)] == [(None, None)] * 4  # at 0.09 m/s nothing is known without voltage
+    intrinsic = 0.25 * 1.0 + 0.75 * 1.2
+    reduction, error = found[2]
+    assert reduction == approx(1 - 0.4 / intrinsic)
+    gradient = np.array([0.25 * 0.4 / intrinsic**2, 0.75 * 0.4 / intrinsic**2, -1 / intrinsic, 0, 0])
+    assert error == approx(np.sqrt(gradient @ covariance @ gradient))
+
+
+def test_a_step_states_its_span_deviation_and_speed() -> None:
+    t = seconds(20)
+    force = 1 + 0.05 * np.random.default_rng(2).standard_normal(t.size)
+    (step,) = friction_at_voltage_steps(
+        time=t, friction_force=force, voltage_peak_to_peak=0 * t, sliding_speed=0 * t + 0.03, settling_time=2.0
+    )
+    assert (step.start_time, step.end_time) == approx((0.0, 19.9975))
+    assert step.friction_force_deviation == approx(np.std(force[800:-80], ddof=1), rel=1e-3)
+    assert step.friction_force_uncertainty == approx(0.05 / np.sqrt(7120), rel=0.4)
+    assert (step.sliding_speed, step.force_zero, step.friction_reduction) == (approx(0.03), 0.0, None)
+    with raises(InvalidInput, match="equal in length"):
+        friction_at_voltage_steps(time=t, friction_force=force, voltage_peak_to_peak=0 * t, revolutions=t[:9])

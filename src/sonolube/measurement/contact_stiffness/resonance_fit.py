@@ -275,9 +275,13 @@ class _Problem:
         error = np.sqrt(np.diag(solution.covariance)[::2])
         linear = np.linalg.lstsq(columns, self.data, rcond=1e-12)[0]
         fitted = columns @ linear / self.weight
-        heights = np.abs(linear[: len(pairs)])
-        if not self.spectrum.has_phase:
-            fitted, heights = np.sqrt(np.maximum(fitted.real, 0)), np.sqrt(heights)
+        modes, slopes = linear[: len(pairs)], linear[len(pairs) : 2 * len(pairs)]
+        if self.spectrum.has_phase:
+            # the residue at the pole: over a narrow sweep mode and slope are each known but for a smooth background
+            pole = np.sqrt(1 - 0.25 / pairs[:, 1] ** 2) + 0.5j / pairs[:, 1]
+            heights = np.abs(modes + slopes * (pole - 1))
+        else:
+            fitted, heights = np.sqrt(np.maximum(fitted.real, 0)), np.sqrt(np.abs(modes))
         largest = float(np.max(np.abs(self.spectrum.response)))
         found = [
             Resonance(
