@@ -1,4 +1,4 @@
-"""Parts of the hierarchical model: priors, deviates, parameters of a rig, scale and width of its discrepancy, scores."""
+"""Parts of the hierarchical model: priors, deviates, parameters of a rig, scale and width of discrepancy, scores."""
 
 from dataclasses import replace
 from math import exp, log, sqrt

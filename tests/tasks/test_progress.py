@@ -6,6 +6,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, Literal
 
+import numpy as np
 import pytest
 import xarray as xr
 from pytest import MonkeyPatch, approx, raises
@@ -171,7 +172,7 @@ def test_runs_are_a_dataset_a_query_or_a_table_and_a_mapping_is_for_tables(
 def test_tables_of_numbers_have_commas_and_comments_and_replaced_keys_are_given_once(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_text("# x\n1,2\n3,4.5 # y\n")
-    assert own_tables.number_table(path) == approx([[1.0, 2.0], [3.0, 4.5]])
+    assert own_tables.number_table(path) == approx(np.array([[1.0, 2.0], [3.0, 4.5]]))
     path.write_text("7\n")
     assert own_tables.number_table(path).shape == (1, 1)
     path.write_text("1;2\n")

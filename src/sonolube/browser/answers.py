@@ -215,8 +215,9 @@ def _file(name: str, value: Any, places: Places) -> Any:
             return NamedBytes(_plain_name(value["name"]), base64.b64decode(value["content"], validate=True))
         except (binascii.Error, TypeError, ValueError):
             raise InvalidInput(f"{name}: the content of {value['name']!r} is not base64", key=name) from None
-    path = Path(places.uploads, _plain_name(str(value.get("upload", ""))))
-    if not places.uploads or not value.get("upload") or not path.is_file():
+    upload = value.get("upload")
+    path = Path(places.uploads, _plain_name(str(upload))) if places.uploads and upload else None
+    if path is None or not path.is_file():
         raise InvalidInput(f"{name}: {value['name']!r} is no longer here; drop the file again", key=name)
     return NamedBytes(_plain_name(value["name"]), path.read_bytes())
 

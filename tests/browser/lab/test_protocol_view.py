@@ -65,14 +65,14 @@ def test_a_view_has_the_total_time_its_prompts_and_limits_with_their_values() ->
     assert found["total"] == approx(14.0)
     assert found["prompts"] == 0
     assert found["kinds"] == list(STEP_KINDS)
-    limits = {each["name"]: each for each in found["limits"]}
+    limits = {each["key"].removeprefix("limits."): each for each in found["limits"]}
     assert (limits["voltage_maximum"]["upper"], limits["voltage_maximum"]["lower"]) == (approx(30.0), None)
     assert limits["voltage_maximum"]["label"] == "voltage maximum"
     assert limits["current_maximum"]["upper"] is None
     assert found["dry_run"]["answer"]["title"] == "Short"
     assert found["refusals"] == found["dry_run"]["answer"]["refusals"]
     assert view(LONG)["prompts"] == 1
-    assert all(each["label"] == each["name"].replace("_", " ") for each in found["metadata"])
+    assert all(each["label"] == each["key"].removeprefix("metadata.").replace("_", " ") for each in found["metadata"])
 
 
 def test_an_edit_is_seen_and_must_be_texts_by_keys() -> None:

@@ -32,7 +32,7 @@ def test_cylinder_and_cone_have_the_corners_of_their_sizes() -> None:
     rod = made("cylinder", length=0.12, radius=0.02)
     assert np.array(rod.vertices) == approx(np.array([(0, 0, 0), (0, 0.02, 0), (0.12, 0.02, 0), (0.12, 0, 0)]))
     assert rod.stations == approx((0, 0.12))
-    assert rod.widths == (approx((0.06, 0.04)),)
+    assert np.array(rod.widths) == approx(np.array([(0.06, 0.04)]))
     assert (rod.fillets, rod.thickness, rod.notes) == ((), None, ())
     cone = made("conical_horn", length=0.12, radius=0.02, end_radius=0.005)
     assert np.array(cone.vertices) == approx(np.array([(0, 0, 0), (0, 0.02, 0), (0.12, 0.005, 0), (0.12, 0, 0)]))
@@ -85,7 +85,7 @@ def test_the_tuned_length_takes_the_place_of_its_size() -> None:
 
 def test_a_booster_has_its_flange_between_its_ends() -> None:
     # 60 mm of radius 18, a flange of 5 mm and radius 25, 50 mm of radius 14
-    sizes = {
+    sizes: dict[str, Any] = {
         "radius": 0.018,
         "end_length": 0.05,
         "end_radius": 0.014,
@@ -227,12 +227,13 @@ def test_the_view_stands_to_scale_in_the_middle_of_the_sheet_on_its_centre_line(
     assert np.hypot(arc[:, 0] - 65, arc[:, 1] - 15) == approx(5.0)
     assert text_of(axes, "driven\nface") == approx((LEFT - 4, middle))
     assert text_of(axes, "working\nface") == approx((RIGHT + 4, middle))
-    assert {each.get_text(): each.get_ha() for each in axes.texts[:2]} == {
+    assert {each.get_text(): each.get_horizontalalignment() for each in axes.texts[:2]} == {
         "driven\nface": "right",
         "working\nface": "left",
     }
     assert axes.get_xlim() == (0.0, 174.0)
-    figure = axes.figure
+    figure = axes.get_figure(root=True)
+    assert figure is not None
     assert 25.4 * figure.get_size_inches() == approx([174.0, axes.get_ylim()[1]])  # so that a mm of it is one of paper
 
 
@@ -331,7 +332,7 @@ def test_a_part_of_half_the_size_is_the_same_drawing_at_two_to_one() -> None:
 
 def gaps(places: Sequence[float], widths: Sequence[float]) -> np.ndarray:
     """Space between neighbours."""
-    return np.diff(places) - (np.array(widths[1:]) + np.array(widths[:-1])) / 2
+    return np.asarray(np.diff(places) - (np.array(widths[1:]) + np.array(widths[:-1])) / 2)
 
 
 def test_texts_that_have_room_stay_and_those_that_have_none_move_apart_evenly() -> None:

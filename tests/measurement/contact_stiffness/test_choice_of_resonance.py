@@ -183,7 +183,7 @@ def test_vibration_of_any_order_is_a_displacement_with_the_noise_of_its_reading(
 def test_what_is_no_spectrum_is_refused(changed: dict[str, np.ndarray], words: str) -> None:
     given = {"frequency": np.arange(1.0, 13.0), "response": np.ones(12), "weight": np.ones(12)} | changed
     with raises(InvalidInput, match=words):
-        ResonanceSpectrum(**given)  # type: ignore[arg-type]
+        ResonanceSpectrum(**given)
 
 
 def test_a_table_of_magnitudes_in_any_order_with_comments_is_read(tmp_path: Path) -> None:

@@ -1,5 +1,7 @@
 """Rest, sliding and steps of constant voltage and speed in small recordings, sample by sample."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from pytest import approx, raises
@@ -174,7 +176,8 @@ def test_stated_steps_take_the_place_of_those_of_the_voltage() -> None:
 def test_steps_that_cannot_be_are_refused(changed: dict[str, float], words: str) -> None:
     t, f, u, v = made()
     with raises(InvalidInput, match=words):
-        sliding_steps(t, f, u, v, **({"shortest_step": 0.5, "settling_time": 0.2, "tolerance": 0.05} | changed))
+        given: dict[str, Any] = {"shortest_step": 0.5, "settling_time": 0.2, "tolerance": 0.05} | changed
+        sliding_steps(t, f, u, v, **given)
 
 
 def test_a_recording_of_rest_has_no_step() -> None:

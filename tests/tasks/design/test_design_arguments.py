@@ -216,7 +216,7 @@ def test_a_plan_is_about_the_rig_where_nothing_is_given() -> None:
 
 def test_factors_of_a_plan_have_counts_of_their_own_and_voltages_scale_the_amplitude() -> None:
     found = factors(speed="20:80mm/s", load="3:7N", voltage="10,20V")
-    assert (found.sliding_speed.size, found.normal_load.tolist()) == (7, approx([3.0, 5.0, 7.0]))
+    assert (found.sliding_speed.size, found.normal_load.tolist()) == (7, approx([3.0, 4.58, 7.0]))  # in even ratios
     assert found.vibration_amplitude == approx([1e-6, 2e-6])
     assert factors(vibration="1:2um").vibration_amplitude.size == 5
     with raises(InvalidInput, match=r"^vibration and voltage both set the amplitude; give one$"):
@@ -250,7 +250,7 @@ def test_a_study_runs_over_its_usual_range_or_the_ends_given(rig: Rig) -> None:
     assert values(rig, "amplitude")[-1] == approx(10e-6)
     frequencies = values(rig, "frequency", "20kHz", "24kHz", 5)
     assert (frequencies[0], frequencies[-1]) == approx((20e3, 24e3))
-    assert frequencies.size > 41  # a resonance within has points of its own
+    assert frequencies.size > 5  # a resonance within has points of its own
 
 
 @pytest.mark.parametrize(
