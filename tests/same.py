@@ -12,10 +12,15 @@ from dataclasses import fields, is_dataclass
 from typing import Any
 
 import numpy as np
+import pytest
 import xarray as xr
-from pytest import approx
 
 ROUNDING = 1e-12
+
+
+def approx(expected: Any, **within: Any) -> Any:
+    """Expectation that pytest compares to rounding, of any type: a tuple may hold it beside words."""
+    return pytest.approx(expected, **within)
 
 
 def same(one: Any, other: Any, *, relative: float = ROUNDING, absolute: float = 0.0, place: str = "") -> None:

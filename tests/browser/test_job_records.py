@@ -3,11 +3,13 @@
 import json
 import os
 import subprocess
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 from pytest import MonkeyPatch, raises
+from tests.names import names_of
 
 from sonolube.browser import job as process_of_job, jobs as module
 from sonolube.browser.jobs import Jobs
@@ -49,8 +51,8 @@ class Process:
 @pytest.fixture
 def jobs(tmp_path: Path, monkeypatch: MonkeyPatch) -> Jobs:
     Process.made, Process.stays = [], False
-    monkeypatch.setattr(module.subprocess, "Popen", Process)
-    monkeypatch.setattr(module.time, "time", lambda: NOW)
+    monkeypatch.setattr(names_of(module).subprocess, "Popen", Process)
+    monkeypatch.setattr(names_of(module).time, "time", lambda: NOW)
     return Jobs(tmp_path / "jobs", most=2)
 
 
@@ -165,7 +167,7 @@ def test_results_and_files_are_those_of_a_job_that_is_done(jobs: Jobs) -> None:
 
 
 def test_jobs_are_kept_for_thirty_days(tmp_path: Path, monkeypatch: MonkeyPatch) -> None:
-    monkeypatch.setattr(module.time, "time", lambda: NOW)
+    monkeypatch.setattr(names_of(module).time, "time", lambda: NOW)
     for name, days in (("young", 29.9), ("old", 30.1)):
         (tmp_path / name).mkdir()
         then = NOW - 86400 * days
@@ -175,13 +177,13 @@ def test_jobs_are_kept_for_thirty_days(tmp_path: Path, monkeypatch: MonkeyPatch)
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: MonkeyPatch) -> Path:
+def folder(tmp_path: Path, monkeypatch: MonkeyPatch) -> Iterator[Path]:
     """Folder of a job, whose process is this one and is not limited."""
     limits: list[Any] = []
     monkeypatch.setattr(process_of_job, "limit_process", lambda **named: limits.append(named))
     request = {"task": "materials", "arguments": {"name": "aluminium_2024"}, "places": NOWHERE}
     (tmp_path / "request.json").write_text(json.dumps(request))
-    yield tmp_path  # type: ignore[misc]
+    yield tmp_path
     assert limits == [{"cpu_time": 600}]
 
 
@@ -225,7 +227,7 @@ def test_a_job_without_memory_has_failed(folder: Path, monkeypatch: MonkeyPatch)
 
 def test_progress_is_written_not_more_often_than_people_read(tmp_path: Path, monkeypatch: MonkeyPatch) -> None:
     now = [100.0]
-    monkeypatch.setattr(process_of_job.time, "monotonic", lambda: now[0])
+    monkeypatch.setattr(names_of(process_of_job).time, "monotonic", lambda: now[0])
     record = process_of_job._Record(tmp_path)
     record.progress("sweeping", 1, 9)
     assert {name: state(tmp_path)[name] for name in ("state", "stage", "done", "total", "seconds")} == {

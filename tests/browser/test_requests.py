@@ -10,8 +10,8 @@ from typing import Any, cast
 import numpy as np
 import pytest
 from pytest import MonkeyPatch, approx, raises
-from sonolube.browser.places import Places
 from tests.browser.asgi import Client
+from tests.names import names_of
 
 from sonolube import __version__
 from sonolube.browser import answers, mode_view, recording_view as recordings, routes, scan_view
@@ -19,6 +19,7 @@ from sonolube.browser.access import Access, Guard
 from sonolube.browser.answer_files import _about, _bytes_of, _file as saved
 from sonolube.browser.jobs import Job, Jobs
 from sonolube.browser.measured_use import measured_table, measured_use
+from sonolube.browser.requests import Places
 from sonolube.browser.routes import Workbench
 from sonolube.browser.take_away import _page_of_blocks, _scalars
 from sonolube.browser.uploads import Uploads
@@ -128,7 +129,7 @@ def test_a_refusal_names_files_without_folders_also_where_there_are_several_faul
 
 
 def test_every_kind_of_block_is_an_object() -> None:
-    blocks = [Rows([("a", "1")]), Table(("h",), [("2",)]), Verbatim(" v "), "  line "]
+    blocks: list[Any] = [Rows([("a", "1")]), Table(("h",), [("2",)]), Verbatim(" v "), "  line "]
     assert [answers._block_object(block) for block in blocks] == [
         {"kind": "rows", "rows": [["a", "1"]]}, {"kind": "table", "heads": ["h"], "rows": [["2"]]},
         {"kind": "verbatim", "text": " v "}, {"kind": "text", "text": "line"},
@@ -382,7 +383,7 @@ def test_an_upload_is_kept_within_its_announced_length(bench: Any) -> None:
     for length in ("11", "many"):
         answer = bench.client.ask("POST", "/api/uploads", b"abc", content_length=length)
         assert answer.status_code == (422 if length == "11" else 200)
-    assert routes.KEPT_DAYS == 30
+    assert names_of(routes).KEPT_DAYS == 30
 
 
 def guarded(**headers: str) -> Client:

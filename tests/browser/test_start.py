@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from pytest import CaptureFixture, MonkeyPatch, raises
+from tests.names import names_of
 
 from sonolube.browser import command, server
 from sonolube.errors import InvalidInput
@@ -43,17 +44,17 @@ def parts(monkeypatch: MonkeyPatch) -> list[Any]:
     for name in ("Pool", "Jobs", "Uploads"):
         monkeypatch.setattr(server, name, Part)
     monkeypatch.setattr(server, "_Server", Server)
-    monkeypatch.setattr(server.signal, "signal", lambda number, act: made.append((number, act)))
+    monkeypatch.setattr(names_of(server).signal, "signal", lambda number, act: made.append((number, act)))
     return made
 
 
 def test_the_link_has_port_and_token_and_all_parts_end_with_the_server(
     parts: list[Any], capsys: CaptureFixture[str], monkeypatch: MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(server.os, "cpu_count", lambda: 8)
+    monkeypatch.setattr(names_of(server).os, "cpu_count", lambda: 8)
     server.run(port=0, token="t" * 40, hosts=("lab.example",), opens_browser=False)
     (number, act), found = parts
-    assert (number, act) == (server.signal.SIGTERM, server._leave)
+    assert (number, act) == (names_of(server).signal.SIGTERM, server._leave)
     assert found.link == f"http://127.0.0.1:{found.port}/?token={'t' * 40}"
     assert (found.opens_browser, found.pool.given) == (False, (4,))
     guard = found.config.app
@@ -69,7 +70,7 @@ def test_the_link_has_port_and_token_and_all_parts_end_with_the_server(
 def test_two_to_four_workers_start_by_the_number_of_processors(
     cores: int | None, workers: int, parts: list[Any], monkeypatch: MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(server.os, "cpu_count", lambda: cores)
+    monkeypatch.setattr(names_of(server).os, "cpu_count", lambda: cores)
     found = server._workbench(None, None, Path("runs"))
     pool, jobs = found.pool, found.jobs
     assert pool.given == (workers,)  # type: ignore[attr-defined]

@@ -113,7 +113,7 @@ def test_the_uncertainty_of_a_run_lets_the_map_pass_beside_it() -> None:
     ],
 )
 def test_runs_that_are_none_are_refused(changes: dict[str, Any], message: str) -> None:
-    given = {"runs": PLACES, "friction_reduction": np.full(7, 0.4), "points": [[0.2, 2.0]]} | changes
+    given: dict[str, Any] = {"runs": PLACES, "friction_reduction": np.full(7, 0.4), "points": [[0.2, 2.0]]} | changes
     with raises(InvalidInput, match=message):
         gaussian_process_map(**given)
 

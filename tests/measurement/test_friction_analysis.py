@@ -64,7 +64,7 @@ def test_a_rotation_is_given_once_and_a_changing_speed_has_none() -> None:
     assert analyse_rotation_speed(made) == approx(0.75, rel=1e-3)
     assert analyse_rotation_speed(steady(voltage_peak_to_peak=0 * t, sliding_speed=0.02 + 0.02 * (t > 9))) is None
     for given in ({"rotation": rotation}, {"rotation_speed": 0.75}):
-        (step,) = analyse_voltage_steps(made, settling_time=0.2, **given)  # type: ignore[arg-type]
+        (step,) = analyse_voltage_steps(made, settling_time=0.2, **given)
         assert step.friction_force == approx(1.0, abs=2e-3)
     with raises(InvalidInput, match="has no channel 'stack_voltage'"):
         analyse_voltage_steps(steady())

@@ -87,7 +87,7 @@ def test_a_recording_is_cut_at_gaps_and_where_its_rate_changes() -> None:
     (part,) = found  # that of the other rate is left out
     assert part.start == 0
     assert abs(part.stop - 400) < 62
-    short = 0.5 * np.arange(63)
+    short = 0.5 * np.arange(63.0)
     assert even_stretches(time=short, fewest=64) == (0.5, [])
     assert even_stretches(time=short, fewest=63)[1] == [slice(0, 63)]
     broken = np.cumsum(np.where(np.arange(200) % 40 == 39, 5.0, 0.5))

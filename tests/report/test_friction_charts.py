@@ -1,5 +1,7 @@
 """Charts and tables of friction at steps, and of tests with and without vibration, number by number."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from pytest import approx
@@ -31,7 +33,7 @@ def chart_of(figure: Figure) -> Chart:
     return figure.drawing.chart()
 
 
-def only(parts: tuple[Part, ...] | list[Part], kind: type[Part]) -> list[Part]:
+def only(parts: tuple[Part, ...] | list[Part], kind: type[Part]) -> list[Any]:
     return [part for part in parts if isinstance(part, kind)]
 
 

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from pytest import approx, raises
+from pytest import raises
+from tests.same import approx
 
 from sonolube.charts import Axis, Line, one_panel
 from sonolube.errors import InvalidInput, UnknownName
@@ -95,8 +96,10 @@ def test_the_dataset_is_that_of_the_files_or_the_quantities_of_the_object(kind: 
     path = tmp_path / "a.nc"
     table.to_netcdf(path)
     labelled = SimpleNamespace(dataset=lambda: table)
-    files = {"none": {"a.csv": "1"}, "dataset": {"a.csv": "1", "a.nc": table}, "path": {"a.nc": path},
-             "labelled": {"a.nc": labelled}}  # fmt: skip
+    files: dict[str, dict[str, Any]] = {
+        "none": {"a.csv": "1"}, "dataset": {"a.csv": "1", "a.nc": table}, "path": {"a.nc": path},
+        "labelled": {"a.nc": labelled},
+    }  # fmt: skip
     found = with_rig(Own(content=LOAD, tables=files[kind]))
     data = found.dataset()
     if kind == "none":

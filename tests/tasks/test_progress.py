@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from pytest import MonkeyPatch, approx, raises
+from tests.names import names_of
 from tests.tasks.running import running
 
 from sonolube.errors import InvalidInput
@@ -85,8 +86,8 @@ def test_a_cell_shows_work_of_more_than_a_second_five_times_a_second_and_nothing
     monkeypatch: MonkeyPatch,
 ) -> None:
     now, cell = [50.0], Shown()
-    monkeypatch.setitem(sys.modules, "IPython.display", cell)  # type: ignore[arg-type]
-    monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
+    monkeypatch.setitem(sys.modules, "IPython.display", cell)
+    monkeypatch.setattr(names_of(progress).time, "monotonic", lambda: now[0])
     with cell_progress("solving <a>") as advance:
         for at, done in ((50.99, 1), (51.0, 2), (51.19, 3), (51.21, 4)):
             now[0] = at
@@ -95,7 +96,7 @@ def test_a_cell_shows_work_of_more_than_a_second_five_times_a_second_and_nothing
         "<small>solving &lt;a&gt; mesh: 2 of 9</small>", "<small>solving &lt;a&gt; mesh</small>", "",
     ]  # fmt: skip
     quick = Shown()
-    monkeypatch.setitem(sys.modules, "IPython.display", quick)  # type: ignore[arg-type]
+    monkeypatch.setitem(sys.modules, "IPython.display", quick)
     with cell_progress("solving") as advance:
         advance("mesh", 1, 2)
     assert quick.lines == []
@@ -134,7 +135,7 @@ def test_rigs_folders_and_stems_are_taken_from_what_was_given(tmp_path: Path) ->
     path = example_file("tribometer").source
     known = read_rig(path)
     assert rig_of(known) is known
-    assert rig_of(SimpleNamespace(rig=known)) is known  # type: ignore[arg-type]
+    assert rig_of(SimpleNamespace(rig=known)) is known
     assert rig_of(str(path)).title == known.title
     assert optional_rig(None) is None
     assert optional_rig(known) is known
@@ -157,7 +158,7 @@ def test_runs_are_a_dataset_a_query_or_a_table_and_a_mapping_is_for_tables(
     data = xr.Dataset()
     assert own_tables.runs_of(data) is data
     monkeypatch.setattr("sonolube.laboratory.catalogue.catalogued_runs", lambda query: query)
-    assert own_tables.runs_of("catalogue:material=brass") == "catalogue:material=brass"  # type: ignore[comparison-overlap]
+    assert own_tables.runs_of("catalogue:material=brass") == "catalogue:material=brass"
     for given in (data, "catalogue:x"):
         with raises(InvalidInput, match="mapping has no meaning here; it is for files of runs"):
             own_tables.runs_of(given, "m.toml")

@@ -11,6 +11,7 @@ import pytest
 from pytest import MonkeyPatch
 from starlette.applications import Starlette
 from tests.browser.asgi import Client
+from tests.names import names_of
 
 from sonolube.browser.lab import routes
 from sonolube.browser.lab.routes import Laboratory
@@ -167,11 +168,12 @@ def test_runs_that_have_ended_are_read_once(bench: Bench, monkeypatch: MonkeyPat
     bench.record("1", 11, end={"state": "safe"}, is_alive=False)
     bench.record("2", 12)
     read: list[str] = []
-    original = routes.read_record
+    original = names_of(routes).read_record
 
     def reading(folder: Path, name: str) -> RunnerRecord:
         read.append(name)
-        return original(folder, name)
+        found: RunnerRecord = original(folder, name)
+        return found
 
     monkeypatch.setattr(routes, "read_record", reading)
     assert [each.id for each in bench.laboratory._records()] == ["2", "1"]
@@ -203,7 +205,7 @@ def test_steering_needs_the_hold_and_reaches_the_process_of_the_run(bench: Bench
 
 def test_a_stop_that_is_not_answered_is_a_signal(bench: Bench, monkeypatch: MonkeyPatch) -> None:
     killed: list[tuple[int, int]] = []
-    monkeypatch.setattr(routes.os, "kill", lambda process, number: killed.append((process, number)))
+    monkeypatch.setattr(names_of(routes).os, "kill", lambda process, number: killed.append((process, number)))
     monkeypatch.setattr(routes, "ON_WINDOWS", False)
     bench.record("1", 11)
     assert bench.post("stop")[0] == 200
@@ -228,7 +230,8 @@ def test_a_start_needs_the_hold_an_idle_laboratory_and_a_plan(bench: Bench, monk
     async def spawned(plan: Any) -> RunnerRecord:
         started.append(plan)
         bench.record("9", 19)
-        return routes.read_record(bench.folder, "9")
+        found: RunnerRecord = names_of(routes).read_record(bench.folder, "9")
+        return found
 
     monkeypatch.setattr(bench.laboratory, "_spawned", spawned)
     status, run = bench.post("start", holder=HOLDER)
@@ -250,7 +253,7 @@ def test_a_process_that_ends_before_it_listens_is_refused_with_its_log(bench: Be
         def wait(self) -> int:
             return 1
 
-    monkeypatch.setattr(routes.subprocess, "Popen", Ended)
+    monkeypatch.setattr(names_of(routes).subprocess, "Popen", Ended)
     with pytest.raises(InvalidInput, match=r"the process of the run did not start; .*log\.txt says why"):
         asyncio.run(bench.laboratory._spawned({"about": {"title": "New"}}))
     (place,) = bench.folder.iterdir()

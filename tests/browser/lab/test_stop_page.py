@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from pytest import MonkeyPatch
 from tests.browser.asgi import Client
+from tests.names import names_of
 
 from sonolube.browser.lab import stop_page as pages
 from sonolube.browser.lab.live_run import LiveRun
@@ -176,7 +177,7 @@ def test_frames_come_with_news_once_a_second_without_and_at_the_end(
         if len(slept) == 40:
             live.end("safe", "completed", "")
 
-    monkeypatch.setattr(pages.asyncio, "sleep", sleep)
+    monkeypatch.setattr(names_of(pages).asyncio, "sleep", sleep)
 
     async def read() -> None:
         frames.extend(

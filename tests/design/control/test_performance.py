@@ -46,7 +46,7 @@ def run_of(setpoint: list[float], force: list[float], **changes: Any) -> ClosedL
     """Run in steps of 10 ms."""
     count = len(setpoint)
     known = ClosedLoopRun(
-        time=0.01 * np.arange(count),
+        time=0.01 * np.arange(float(count)),
         setpoint=np.array(setpoint),
         friction_force=np.array(force),
         measured_force=np.array(force),
@@ -55,7 +55,7 @@ def run_of(setpoint: list[float], force: list[float], **changes: Any) -> ClosedL
         resonance_frequency=np.full(count, 20e3),
         envelope=np.zeros(count, dtype=complex),
         phase=np.zeros(count),
-        electrical_energy=0.5 * np.arange(count),
+        electrical_energy=0.5 * np.arange(float(count)),
     )
     return replace(known, **changes)
 

@@ -253,7 +253,8 @@ def test_drift_warms_towards_its_end_and_is_refused_beyond_a_tenth() -> None:
     ThermalDrift(final_temperature_rise=100.0, frequency_per_temperature=-1e-3)
     with raises(InvalidInput, match="must shift the resonance by no more than a tenth"):
         ThermalDrift(final_temperature_rise=101.0, frequency_per_temperature=-1e-3)
-    for changes in ({"friction_factor": 0.0}, {"later_factor": -1.0}, {"start_time": -1.0}):
+    refused: tuple[dict[str, Any], ...] = ({"friction_factor": 0.0}, {"later_factor": -1.0}, {"start_time": -1.0})
+    for changes in refused:
         with raises(InvalidInput):
             Disturbance(**changes)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from pytest import approx
+from tests.same import approx
 
 from sonolube.design.horns.profile import HornProfile, _spread, horn_drawing, horn_notes, horn_profile, profile_dxf
 from sonolube.design.horns.shapes import TunableBody

@@ -113,7 +113,7 @@ def test_the_front_is_drawn_over_the_feasible_designs_with_its_ends_named() -> N
         (8.0, 10.0, "22.25 kHz, 60 V"),
     ]
     assert (panel.x.text, panel.y.text) == ("Power of the amplifier [W]", "Heat in the actuator [W]")
-    alone = SimpleNamespace(**{**vars(OPTIMUM), "front": (FIRST,)})
+    alone: Any = SimpleNamespace(**{**vars(OPTIMUM), "front": (FIRST,)})
     assert len([part for part in front_chart(alone).panels[0].parts if isinstance(part, Note)]) == 1
 
 
@@ -141,7 +141,7 @@ def test_each_actuator_has_a_curve_of_its_least_objective_and_its_refined_design
         ([22.25], [8.0], ""),
     ]
     assert (panel.x.lowest, panel.x.highest, panel.y.logarithmic) == (20.0, 24.0, True)
-    alone = SimpleNamespace(**{**vars(OPTIMUM), "designs": (FIRST,)})
+    alone: Any = SimpleNamespace(**{**vars(OPTIMUM), "designs": (FIRST,)})
     assert next(p.label for p in frequency_chart(alone).panels[0].parts if isinstance(p, Points)) == "best"
 
 

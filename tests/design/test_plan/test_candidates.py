@@ -25,7 +25,7 @@ INPUTS = rig_inputs(RIG)
 
 
 def speeds(text: str, count: int = 5) -> list[float]:
-    return factor_values(text, unit="m/s", option="--speed", count=count).tolist()
+    return list(factor_values(text, unit="m/s", option="--speed", count=count).tolist())
 
 
 def test_values_are_a_list_in_one_unit_or_a_range_of_equal_ratios() -> None:

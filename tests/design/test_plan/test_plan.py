@@ -50,9 +50,9 @@ def test_states_of_a_run_settle_by_distance_and_share_the_time_of_measuring() ->
     assert [each.duration for each in states] == [16.0, 17.0, 11.0]
     (alone,) = procedure.states(0.1, (True,))
     assert (alone.settling, alone.measuring) == (5.0, 12.0)
-    for changes in ({"intrinsic_distance": -1.0}, {"vibrated_distance": -1.0}, {"measuring_time": 0.0}):
+    for intrinsic, vibrated, measuring in ((-1.0, 1.0, 1.0), (1.0, -1.0, 1.0), (1.0, 1.0, 0.0)):
         with raises(InvalidInput):
-            Procedure(**{"intrinsic_distance": 1.0, "vibrated_distance": 1.0, **changes})
+            Procedure(intrinsic_distance=intrinsic, vibrated_distance=vibrated, measuring_time=measuring)
 
 
 def test_the_published_distances_are_the_longest_of_table_2_3() -> None:

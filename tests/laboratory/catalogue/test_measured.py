@@ -187,7 +187,7 @@ UNITS = {"friction_force": "N", "voltage_peak_to_peak": "V", "temperature": "K"}
 
 def test_recordings_that_were_taken_in_have_the_load_and_speed_of_their_facts(tmp_path: Path) -> None:
     recording(tmp_path / "b.csv", friction_force=np.full(500, 0.4))
-    facts = {"normal_load": 3.0, "sliding_speed": 0.02, "frequency": 21e3, "tags": "old"}
+    facts: dict[str, float | str] = {"normal_load": 3.0, "sliding_speed": 0.02, "frequency": 21e3, "tags": "old"}
     folder = take_in(tmp_path / "runs", tmp_path / "b.csv", facts=facts)
     (_, row), left_out = level_rows([folder])
     assert left_out == []

@@ -6,7 +6,8 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
-from pytest import approx, raises
+from pytest import raises
+from tests.same import approx
 
 from sonolube.design.control import (
     Amplifier,

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from pytest import approx
+from tests.same import approx
 
 from sonolube.charts import Axis, Line, Rule, Zone
 from sonolube.design.control import Amplifier
@@ -157,7 +157,7 @@ def test_what_a_test_says_before_it_begins_stands_once_each_and_only_where_it_ap
         {"kind": "repeat", "count": 2, "steps": [{**WAIT}]},
     ]
     rate = 1e6
-    acquiring = {"channels": ("a", "b"), "sample_rate": rate, "recorded_until": 70.0}
+    acquiring: dict[str, Any] = {"channels": ("a", "b"), "sample_rate": rate, "recorded_until": 70.0}
     points = (
         point(0.0, "1", "acquire", **acquiring),
         point(0.0, "2", "drive", load=load(0.1)),

@@ -5,9 +5,10 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from pytest import MonkeyPatch, approx
+from pytest import MonkeyPatch
 from tests.laboratory.records.clock import Clock
 from tests.laboratory.records.recorded import CHANNELS, RATE, begun, block_of
+from tests.same import approx
 
 from sonolube.facts.protocol import protocol_from, protocol_text
 from sonolube.laboratory import Block, Channel

@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from pytest import approx, raises
+from pytest import raises
+from tests.same import approx
 
 from sonolube.charts import Line
 from sonolube.errors import InvalidInput

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pytest import approx, raises
+from pytest import raises
+from tests.same import approx
 
 from sonolube.checks import Floats
 from sonolube.facts.protocol import PROMPT_DURATIONS, Prompt

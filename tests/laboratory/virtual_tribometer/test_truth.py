@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pytest import approx
+from tests.same import approx
 
 from sonolube.laboratory.devices import DriveSetting
 from sonolube.laboratory.heating_assumptions import HeatingAssumptions

@@ -175,8 +175,8 @@ def test_stated_steps_take_the_place_of_those_of_the_voltage() -> None:
 )
 def test_steps_that_cannot_be_are_refused(changed: dict[str, float], words: str) -> None:
     t, f, u, v = made()
+    given: dict[str, Any] = {"shortest_step": 0.5, "settling_time": 0.2, "tolerance": 0.05} | changed
     with raises(InvalidInput, match=words):
-        given: dict[str, Any] = {"shortest_step": 0.5, "settling_time": 0.2, "tolerance": 0.05} | changed
         sliding_steps(t, f, u, v, **given)
 
 

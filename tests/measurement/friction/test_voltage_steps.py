@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 import xarray as xr
-from pytest import approx, raises
+from pytest import raises
+from tests.same import approx
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.friction.step_means import StepMeans

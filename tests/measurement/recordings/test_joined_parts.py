@@ -160,7 +160,7 @@ def test_a_sample_twenty_times_beyond_all_others_is_damaged_and_four_are_a_signa
     rng = np.random.default_rng(1)
     values = 5 + rng.uniform(-1, 1, 40)
     values[10] = 5 + 1.05 * 20 * np.max(np.abs(values - np.median(values)))
-    axis = 0.5 * np.arange(40)
+    axis = 0.5 * np.arange(40.0)
     (said,) = damaged_sample_caveats("load", values, unit="N", axis=axis, axis_label="time [s]")
     assert f"load is {values[10]:.3g} N at time [s] = 5, 20 times or more" in said
     for changed in (np.where(np.arange(40) == 10, 5 + 15, values), np.where(np.arange(40) == 10, 1e3, 5.0)):

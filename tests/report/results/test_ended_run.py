@@ -96,11 +96,8 @@ def test_the_next_command_is_for_the_channels_that_were_recorded(
 
 
 def test_a_run_in_words_has_outcome_state_of_the_outputs_record_and_next_command() -> None:
-    title, rows, after = results.run_blocks(
-        SimpleNamespace(state=State.SAFE),
-        run({ONE: ("friction_force",)}),
-        simulated=True,  # type: ignore[arg-type]
-    )
+    state: Any = SimpleNamespace(state=State.SAFE)
+    title, rows, after = results.run_blocks(state, run({ONE: ("friction_force",)}), simulated=True)
     assert title == "Brass on steel (virtual)"
     assert isinstance(rows, Rows)
     assert list(rows.rows) == [

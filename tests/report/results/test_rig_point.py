@@ -48,7 +48,7 @@ def test_the_error_on_published_tests_is_of_vibration_along_the_normal(
     inner = SimpleNamespace(rig=SimpleNamespace(direction=SimpleNamespace(is_normal=is_normal)))
     monkeypatch.setattr("sonolube.rig.resolved_rig.resolved_rig", lambda rig: inner)
     rig: Any = SimpleNamespace()
-    found = results.beyond_the_model(rig, rig, interval=True)
+    found: Any = results.beyond_the_model(rig, rig, interval=True)
     assert (found.error, found.interval) == (error if is_normal else None, "interval")
     assert results.beyond_the_model(rig, rig, interval=False) == results.BeyondTheModel(error=None, interval=None)
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 from pytest import MonkeyPatch, approx
+from tests.names import names_of
 
 from sonolube.report.blocks import Table
 from sonolube.tasks.compare import compare, literature
@@ -21,10 +22,10 @@ TABLE: Any = SimpleNamespace(caveats=("of the runs",), title="Own runs", runs=6,
 def words(monkeypatch: MonkeyPatch) -> None:
     """Let each part of the results be one word."""
     for name in ("fit_blocks", "rig_blocks", "runs_blocks", "parameter_lines", "inapplicable_lines", "error_rows"):
-        monkeypatch.setattr(compare.results, name, lambda *each, name=name: [name])
+        monkeypatch.setattr(names_of(compare).results, name, lambda *each, name=name: [name])
     for name in ("runs_object", "rig_object", "model_object", "fit_object"):
-        monkeypatch.setattr(compare.results, name, lambda *each, name=name: {name: 1})
-    monkeypatch.setattr(compare.results, "next_line", lambda one, volts: f"next {one} at {volts}")
+        monkeypatch.setattr(names_of(compare).results, name, lambda *each, name=name: {name: 1})
+    monkeypatch.setattr(names_of(compare).results, "next_line", lambda one, volts: f"next {one} at {volts}")
 
 
 def comparison(**more: Any) -> ComparisonAnswer:
@@ -89,7 +90,8 @@ def test_a_fit_says_what_direction_it_takes_where_no_run_states_one(monkeypatch:
     assert answer.caveats() == ("of the runs", taken)
     stated = FitAnswer(fit=fitted(directions=(None, 0.5)), rig=None, volts_per_amplitude=None, name="n")
     assert stated.caveats() == ("of the runs",)
-    assert (list(answer.figures()), answer.files()) == (["own-fit"], {"own-fit.nc": "data"})
+    files: Any = answer.files()
+    assert (list(answer.figures()), files) == (["own-fit"], {"own-fit.nc": "data"})
     assert "of 6 runs" in answer.figures()["own-fit"].caption
     none = FitAnswer(fit=fitted(models=()), rig=None, volts_per_amplitude=None, name="own-fit")
     assert (none.figures(), none.files()) == ({}, {})

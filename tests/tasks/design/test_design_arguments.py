@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from pytest import MonkeyPatch, approx, raises
+from tests.names import names_of
 from tests.tasks.running import running
 
 from sonolube.design.optimisation import OWN_ACTUATOR
@@ -52,14 +53,14 @@ def test_sampling_and_times_of_a_run_are_positive_and_the_delay_fits_in() -> Non
 
 def test_limits_are_those_given_the_rigs_own_or_none(monkeypatch: MonkeyPatch) -> None:
     monkeypatch.setattr(control, "own_level", lambda rig: 28.0)
-    monkeypatch.setattr(control, "commanded_quantity", lambda rig: control.VOLTAGE)
+    monkeypatch.setattr(control, "commanded_quantity", lambda rig: names_of(control).VOLTAGE)
     with running(control.control, voltage_limit="30 V"):
         amplifier = control._limits(UNDRIVEN, None, None, None, None)["amplifier"]
         assert (amplifier.voltage_maximum, amplifier.current_maximum, amplifier.slew_rate_maximum) == (28.0, inf, inf)
         amplifier = control._limits(UNDRIVEN, None, "30 V", 0.5, 2e6)["amplifier"]
         assert (amplifier.voltage_maximum, amplifier.current_maximum) == approx((30.0, 0.5))
         assert amplifier.slew_rate_maximum == approx(2e6)
-        monkeypatch.setattr(control, "commanded_quantity", lambda rig: control.AMPLITUDE)
+        monkeypatch.setattr(control, "commanded_quantity", lambda rig: names_of(control).AMPLITUDE)
         assert control._limits(UNDRIVEN, "2 um", None, None, None) == {"amplitude_maximum": approx(2e-6)}
         assert control._limits(UNDRIVEN, None, None, None, None) == {"amplitude_maximum": 28.0}
 
@@ -72,18 +73,19 @@ def test_an_efficiency_that_is_given_holds_at_every_speed() -> None:
 
 def test_a_resonance_is_assumed_where_a_rig_has_no_structure(rig: Rig, monkeypatch: MonkeyPatch) -> None:
     assert control.resonance_without_structure(rig, 50.0, 0.2) == (None, {})
-    monkeypatch.setattr(control.loops, "assumed_mode", lambda rig, **named: named)
-    monkeypatch.setattr(control.loops, "amplitude_mode", lambda rig, **named: named)
-    monkeypatch.setattr(control, "commanded_quantity", lambda rig: control.VOLTAGE)
+    monkeypatch.setattr(names_of(control).loops, "assumed_mode", lambda rig, **named: named)
+    monkeypatch.setattr(names_of(control).loops, "amplitude_mode", lambda rig, **named: named)
+    monkeypatch.setattr(control, "commanded_quantity", lambda rig: names_of(control).VOLTAGE)
     bare: Any = SimpleNamespace(structure=None)
+    mode: Any
     mode, assumed = control.resonance_without_structure(bare, 50.0, 0.25)
-    assert mode == {"quality_factor": 50.0, "coupling_factor": 0.25}  # type: ignore[comparison-overlap]
+    assert mode == {"quality_factor": 50.0, "coupling_factor": 0.25}
     assert assumed == {
         "resonance": "at the drive's frequency, quality factor 50, coupling 0.25; not measured",
     }  # fmt: skip
-    monkeypatch.setattr(control, "commanded_quantity", lambda rig: control.AMPLITUDE)
+    monkeypatch.setattr(control, "commanded_quantity", lambda rig: names_of(control).AMPLITUDE)
     mode, assumed = control.resonance_without_structure(bare, 50.0, 0.25)
-    assert mode == {"quality_factor": 50.0}  # type: ignore[comparison-overlap]
+    assert mode == {"quality_factor": 50.0}
     assert "quality factor 50; not measured" in assumed["amplitude control"]
 
 
@@ -129,7 +131,7 @@ def test_a_bolt_needs_its_thread_and_tension(monkeypatch: MonkeyPatch) -> None:
     )  # fmt: skip
     for given in (("M6x40mm", None), (None, 1e3)):
         with raises(InvalidInput, match=r"^bolt and preload belong together, such as bolt M6x40mm preload 1kN$"):
-            optimise.bolt_of_thread(*given, 640e6)
+            optimise.bolt_of_thread(given[0], given[1], 640e6)
 
 
 def test_actuators_are_named_once_and_the_catalogue_is_those_with_complete_sheets() -> None:
@@ -294,7 +296,8 @@ def test_curves_are_voltages_or_amplitudes_by_what_the_rig_is_commanded_by(rig: 
 def test_waveforms_have_no_range_and_a_sweep_is_over_keys_or_of_one_quantity(given: dict[str, Any], rig: Rig) -> None:
     with raises(InvalidInput, match=r"have no meaning for of waveform, which runs over names$"):
         sweep.sweep(rig, of="waveform", **given)
-    for both in ({}, {"of": "load", "over": {"drive.frequency": [1.0]}}):
+    neither_or_both: tuple[dict[str, Any], ...] = ({}, {"of": "load", "over": {"drive.frequency": [1.0]}})
+    for both in neither_or_both:
         with raises(InvalidInput, match=r"^needs either over, keys with their values, or of, one quantity"):
             sweep.sweep(rig, **both)
     for arguments, words in (
@@ -321,7 +324,7 @@ def test_bands_run_over_one_or_two_rising_keys() -> None:
         ({"a.frequency": [2.0, 1.0]}, "over a.frequency: a band needs at least 2 values that rise"),
     ):
         with raises(InvalidInput, match=f"^{words}$"):
-            uncertainty._axes(over)  # type: ignore[arg-type]
+            uncertainty._axes(over)
 
 
 @pytest.mark.parametrize("given", [{"over": {"a.b": [1.0, 2.0]}}, {"identified": True}])
@@ -335,7 +338,7 @@ def test_kinds_of_maps_are_those_of_the_commanded_quantity(rig: Rig, monkeypatch
     assert maps._kind(rig, "frequency-voltage") == "frequency-voltage"
     with raises(InvalidInput, match=r"^kind velocity-amplitude is for a rig without a drive voltage, and that of"):
         maps._kind(rig, "velocity-amplitude")
-    monkeypatch.setattr(maps, "commanded_quantity", lambda rig: maps.AMPLITUDE)
+    monkeypatch.setattr(maps, "commanded_quantity", lambda rig: names_of(maps).AMPLITUDE)
     assert maps._kind(rig, None) == "velocity-amplitude"
     with raises(InvalidInput, match=r"^kind velocity-power needs a drive voltage, and .* has an amplitude alone"):
         maps._kind(rig, "velocity-power")
@@ -426,14 +429,8 @@ def test_what_a_unit_lacks_is_said(
     monkeypatch.setattr(mock_up, "resolved_rig", lambda rig: vibration)
     tables: Any = SimpleNamespace(has_current=has_current, ranges=SimpleNamespace(frequency=frequency), heat=heat)
     unit: Any = SimpleNamespace(missing=missing)
-    answer = mock_up.UnitsAnswer(
-        rig=UNDRIVEN,
-        tables=tables,
-        study=SimpleNamespace(),
-        plant=unit,
-        controller=unit,
-        assumed={},  # type: ignore[arg-type]
-    )
+    study: Any = SimpleNamespace()
+    answer = mock_up.UnitsAnswer(rig=UNDRIVEN, tables=tables, study=study, plant=unit, controller=unit, assumed={})
     found = answer.caveats()
     assert len(found) == 3 + count
     assert found[0] == "own"

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from pytest import MonkeyPatch, approx, raises
+from tests.names import names_of
 from tests.tasks.running import running
 
 from sonolube.errors import InvalidInput
@@ -56,10 +57,10 @@ def test_a_cancelled_run_is_stopped_in_order() -> None:
     def report() -> None:
         with watched(None, lambda: calls[0]), protocol_run.run_stage("running", control) as advance:
             advance("step", 1, 2)
-            assert not control.stop_reason
+            reasons = [control.stop_reason]
             calls[0] = True
             advance("step", 2, 2)
-            assert control.stop_reason == "cancelled"
+            assert [*reasons, control.stop_reason] == ["", "cancelled"]
 
     with raises(TaskCancelled):
         report()
@@ -74,7 +75,7 @@ def test_what_a_dry_run_refuses_is_said_first_with_the_number_of_the_others(
     refusals: tuple[str, ...], text: str | None, monkeypatch: MonkeyPatch
 ) -> None:
     found = SimpleNamespace(refusals=refusals)
-    monkeypatch.setattr(protocol_run.dry_runs, "dry_run", lambda protocol, *, rig: found)
+    monkeypatch.setattr(names_of(protocol_run).dry_runs, "dry_run", lambda protocol, *, rig: found)
     asked: Any = SimpleNamespace()
     if text is None:
         protocol_run._require_possible_dry(asked, None)
@@ -96,7 +97,7 @@ def test_a_virtual_rig_is_at_the_load_and_on_the_groove_of_the_protocol(monkeypa
     protocol_run._virtual_rig(plan)
     metadata.normal_load, metadata.groove_diameter = 7.0, 0.05
     protocol_run._virtual_rig(plan, real_time=True)
-    usual = protocol_run.GROOVE_DIAMETER
+    usual = names_of(protocol_run).GROOVE_DIAMETER
     assert made == [
         (approx(3.0), {"seed": 4, "real_time": False, "groove_diameter": usual}),
         (7.0, {"seed": 4, "real_time": True, "groove_diameter": 0.05}),
@@ -196,8 +197,8 @@ def test_a_rig_that_holds_friction_has_a_drive() -> None:
 def test_held_friction_has_a_figure_and_a_table_once_it_was_held_and_fails_before_its_time(
     monkeypatch: MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(friction_hold.results, "saturation_lines", lambda held: ["no reach"])
-    monkeypatch.setattr(friction_hold.closed_loop, "held_friction_dataset", lambda held, *, title: title)
+    monkeypatch.setattr(names_of(friction_hold).results, "saturation_lines", lambda held: ["no reach"])
+    monkeypatch.setattr(names_of(friction_hold).closed_loop, "held_friction_dataset", lambda held, *, title: title)
     held: Any = SimpleNamespace(time=np.zeros(2), outcome="completed", hold=SimpleNamespace(friction_force=1.5))
     rig: Any = SimpleNamespace(assumptions={"a": "b"}, title="Own")
     values: dict[str, Any] = {"rig": rig, "design": None, "held": held, "run": recorded(), "assumed": {"c": "d"},

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 import xarray as xr
 from pytest import MonkeyPatch, approx, raises
+from tests.names import names_of
 
 from sonolube.errors import InvalidInput
 from sonolube.report.blocks import Rows, Table
@@ -25,8 +26,8 @@ def test_facts_are_numbers_where_they_can_be_and_need_a_name() -> None:
 
 
 def test_runs_that_were_found_are_counted_and_listed(monkeypatch: MonkeyPatch) -> None:
-    monkeypatch.setattr(run_folders.results, "found_row", lambda entry: [entry])
-    monkeypatch.setattr(run_folders.results, "found_object", lambda entry: {"id": entry})
+    monkeypatch.setattr(names_of(run_folders).results, "found_row", lambda entry: [entry])
+    monkeypatch.setattr(names_of(run_folders).results, "found_object", lambda entry: {"id": entry})
     found: Any = SimpleNamespace(entries=("a", "b"), of=7, caveats=("index renewed",))
     answer = FoundRunsAnswer(place=Path("runs"), found=found)
     head, table = answer.blocks()

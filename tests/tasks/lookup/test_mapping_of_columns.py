@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from pytest import MonkeyPatch, raises
+from tests.names import names_of
 
 from sonolube.errors import InvalidInput
 from sonolube.report.blocks import Rows, Table, Verbatim
@@ -102,8 +103,8 @@ def test_facts_need_the_rig_that_they_are_of_and_a_modal_mass_its_free_frequency
 def test_a_rig_of_facts_begins_with_its_findings_as_comments_and_is_written_where_asked(
     monkeypatch: MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(facts.results, "parameter_rows", lambda found: [["tip_mass", "50 g", "40 g", "60 g"]])
-    monkeypatch.setattr(facts.results, "fact_lines", lambda found: ["  facts that hold: a"])
+    monkeypatch.setattr(names_of(facts).results, "parameter_rows", lambda found: [["tip_mass", "50 g", "40 g", "60 g"]])
+    monkeypatch.setattr(names_of(facts).results, "fact_lines", lambda found: ["  facts that hold: a"])
     nothing: Any = None
     answer = facts.IdentificationAnswer(identification=nothing, stack=nothing, rig_text="[stack]\n")
     assert answer.file_text() == (
@@ -120,8 +121,8 @@ def test_a_rig_of_facts_begins_with_its_findings_as_comments_and_is_written_wher
 
 
 def test_a_decision_has_its_advice_where_there_is_one(monkeypatch: MonkeyPatch) -> None:
-    monkeypatch.setattr(decay.results, "run_line", lambda table, conditions: "the run")
-    monkeypatch.setattr(decay.results, "rows", lambda found: [("a", "b")])
+    monkeypatch.setattr(names_of(decay).results, "run_line", lambda table, conditions: "the run")
+    monkeypatch.setattr(names_of(decay).results, "rows", lambda found: [("a", "b")])
 
     class Decision:
         verdict, advice = "it grows", "twice"

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from pytest import MonkeyPatch, approx, raises
+from tests.names import names_of
 from tests.tasks.running import running
 
 from sonolube.errors import InvalidInput, UnknownName
@@ -60,12 +61,14 @@ def test_a_medium_takes_the_properties_that_are_given_and_no_ceramic(monkeypatch
     solid = SimpleNamespace(name="brass", value=lambda name: {"youngs_modulus": 1e11, "density": 8e3}[name])
     monkeypatch.setattr(parts, "material", lambda name: solid)
     monkeypatch.setattr(parts, "piezo_ceramic_names", lambda: ("pic255",))
-    monkeypatch.setattr(parts.fem, "isotropic_medium", lambda **named: named)
-    monkeypatch.setattr(parts.fem, "medium_from_material", lambda found: found)
-    assert parts.solid_medium("bar", "brass", {"poisson_ratio": 0.3, "density": 7e3}) == {
+    monkeypatch.setattr(names_of(parts).fem, "isotropic_medium", lambda **named: named)
+    monkeypatch.setattr(names_of(parts).fem, "medium_from_material", lambda found: found)
+    medium: Any = parts.solid_medium("bar", "brass", {"poisson_ratio": 0.3, "density": 7e3})
+    assert medium == {
         "youngs_modulus": 1e11, "poisson_ratio": 0.3, "density": 7e3,
     }  # fmt: skip
-    assert parts.solid_medium("bar", "brass", {}) is solid
+    whole: Any = parts.solid_medium("bar", "brass", {})
+    assert whole is solid
     solid.name = "pic255"
     with raises(InvalidInput, match=r"^material pic255: a piezoelectric ceramic needs .* compute bar --ceramic pic255"):
         parts.solid_medium("bar", "pic255", {})
@@ -78,7 +81,7 @@ def test_a_transducer_takes_the_wiring_that_it_has_and_a_part_the_usual_one(monk
     with raises(InvalidInput, match=r"^drive \+z: stack has its own; leave it out, or take another part$"):
         parts.named_transducer("stack", {"length": 1.0}, drive="+z")
     monkeypatch.setattr(parts, "named_part", lambda part, sizes: (part, sizes))
-    monkeypatch.setattr(parts.fem, "poled_part", lambda geometry, **named: (geometry, named))
+    monkeypatch.setattr(names_of(parts).fem, "poled_part", lambda geometry, **named: (geometry, named))
     assert parts.named_transducer("block", {}, poled="x", ground=None) == (  # type: ignore[comparison-overlap]
         ("block", {}), {"ceramic": "pic255", "along": "x", "driven": "+z", "grounded": "-z"},
     )  # fmt: skip
@@ -135,10 +138,10 @@ def test_pictures_are_numbered_among_the_elastic_modes(monkeypatch: MonkeyPatch)
     solved: Any = SimpleNamespace(
         found=found, part=SimpleNamespace(name="a/bar.step", assumptions={"x": "y"}), names=["r", "r", "axial 1", "b 2"]
     )
-    monkeypatch.setattr(modes.mode_files, "shapes_table", lambda *each, direction: f"table {direction}")
-    monkeypatch.setattr(modes.mode_files, "modes_grid", lambda *each: "grid")
-    monkeypatch.setattr(modes.mode_files, "mode_animation", lambda surface, *, title: title.encode())
-    monkeypatch.setattr(modes.mode_files, "mode_title", lambda found, names, row: names[row])
+    monkeypatch.setattr(names_of(modes).mode_files, "shapes_table", lambda *each, direction: f"table {direction}")
+    monkeypatch.setattr(names_of(modes).mode_files, "modes_grid", lambda *each: "grid")
+    monkeypatch.setattr(names_of(modes).mode_files, "mode_animation", lambda surface, *, title: title.encode())
+    monkeypatch.setattr(names_of(modes).mode_files, "mode_title", lambda found, names, row: names[row])
     monkeypatch.setattr(modes.ModesAnswer, "_surface", lambda self, row: row)
     values: dict[str, Any] = {"solved": solved, "direction": "z"}
     plain = modes.ModesAnswer(**values, points=None, with_grid=False, with_animations=False, structure=None)
@@ -194,14 +197,14 @@ def test_a_node_that_was_taken_is_said_with_its_place_and_distance(
 
 def test_what_a_file_leaves_out_is_said_with_its_size_where_it_can_be_told(monkeypatch: MonkeyPatch) -> None:
     lists = {"natural_frequency": np.array([20e3, 40e3, 30e3])}
-    monkeypatch.setattr(foreign.participation, "kept_compliance", lambda found: 4e-9)
-    monkeypatch.setattr(foreign.participation, "truncated_compliance", lambda found: 1e-9)
+    monkeypatch.setattr(names_of(foreign).participation, "kept_compliance", lambda found: 4e-9)
+    monkeypatch.setattr(names_of(foreign).participation, "truncated_compliance", lambda found: 1e-9)
     text = foreign._truncation(lists)
     assert text.startswith(
         "modes above 40 kHz are left out: their static compliance at the contact is missing, about 1e"
     )
     assert "beside 4e-09 m/N" in text
-    monkeypatch.setattr(foreign.participation, "truncated_compliance", lambda found: np.nan)
+    monkeypatch.setattr(names_of(foreign).participation, "truncated_compliance", lambda found: np.nan)
     assert "is missing, and the clamped" in foreign._truncation(lists)
 
 
@@ -235,7 +238,7 @@ def test_a_stress_needs_a_working_end_and_a_preload_a_rod() -> None:
     impedance._require_stressed("stack", transducer, is_preloaded=False)
     with raises(InvalidInput, match=r"^preload: stack has no rod that preloads its stack; set rod_radius$"):
         impedance._require_stressed("stack", transducer, is_preloaded=True)
-    transducer.geometry.regions = ("stack", impedance.ROD)
+    transducer.geometry.regions = ("stack", names_of(impedance).ROD)
     impedance._require_stressed("stack", transducer, is_preloaded=True)
     transducer.outputs = {}
     with raises(InvalidInput, match=r"^amplitude: stack has no working end in line with its stack$"):

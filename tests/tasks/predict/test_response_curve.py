@@ -6,7 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
-from pytest import approx, raises
+from pytest import raises
+from tests.same import approx
 from tests.tasks.running import running
 
 from sonolube.errors import InvalidInput
@@ -106,7 +107,7 @@ def followed(along: Any, monkeypatch: pytest.MonkeyPatch, **ends: Any) -> tuple[
     resolved: Any = SimpleNamespace(rig=SimpleNamespace(drive=drive, title="Own"))
     every = dict.fromkeys(("lowest", "highest", "lowest_voltage", "highest_voltage")) | ends
     with running(response, **ends):
-        curves.followed_curve(resolved, along=along, **every)  # type: ignore[arg-type]
+        curves.followed_curve(resolved, along=along, **every)
     return asked[0]
 
 
@@ -194,7 +195,7 @@ def test_a_film_is_stated_by_two_numbers_or_follows_from_a_viscosity() -> None:
         with raises(
             InvalidInput, match=r"^viscosity gives the film: leave out film_coefficient and asperity_pressure$"
         ):
-            regimes._viscous_lubricant(neither | {"film_coefficient": 0.1}, viscous(viscosity=0.1))  # type: ignore[dict-item]
+            regimes._viscous_lubricant(neither | {"film_coefficient": 0.1}, viscous(viscosity=0.1))
         with raises(InvalidInput, match=r"^pressure_viscosity is of a ball: leave it out, or give tip_radius$"):
             regimes._viscous_lubricant(neither, viscous(viscosity=0.1, pressure_viscosity=1e-8))
         with raises(InvalidInput, match=r"^inlet_ratio is of a flat pad: leave out it or tip_radius$"):
@@ -204,7 +205,7 @@ def test_a_film_is_stated_by_two_numbers_or_follows_from_a_viscosity() -> None:
 @pytest.mark.parametrize("given", [{"pin": "steel"}, {"disc": "steel"}])
 def test_both_materials_belong_together(given: dict[str, str]) -> None:
     with raises(InvalidInput, match=r"^pin and disc belong together: give both or neither$"):
-        regime(SimpleNamespace(), **given)  # type: ignore[arg-type]
+        regime(SimpleNamespace(), **given)
 
 
 @dataclass
@@ -302,6 +303,7 @@ def test_the_vibration_of_a_new_rig_is_one_text() -> None:
 def test_rigs_of_a_laboratory_come_with_their_runs_and_without_them_not_at_all(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(predict, "rig_of", lambda rig: f"rig {rig}")
     monkeypatch.setattr(predict, "runs_of", lambda runs: f"runs {runs}")
-    assert predict._rigs_with_runs({"a": "1", "b": None}) == [("rig a", "runs 1")]
-    assert predict._rigs_with_runs([("a", "1"), ("c", "2")]) == [("rig a", "runs 1"), ("rig c", "runs 2")]
-    assert predict._rigs_with_runs(None) == []
+    read: Any = predict._rigs_with_runs
+    assert read({"a": "1", "b": None}) == [("rig a", "runs 1")]
+    assert read([("a", "1"), ("c", "2")]) == [("rig a", "runs 1"), ("rig c", "runs 2")]
+    assert read(None) == []

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from pytest import MonkeyPatch, approx
+from tests.names import names_of
 
 from sonolube.report.results.design import control_design as results
 from sonolube.rig import AMPLITUDE, VOLTAGE
@@ -190,8 +191,8 @@ def test_a_drive_at_the_end_of_its_band_has_lost_the_resonance(monkeypatch: Monk
 
 def test_the_holder_is_said_with_stiffness_mass_in_grams_damping_and_static_friction(monkeypatch: MonkeyPatch) -> None:
     for name, value in (("STIFFNESS", 2e3), ("MASS", 0.025), ("DAMPING_RATIO", 0.02)):
-        monkeypatch.setattr(results.holder, f"HOLDER_{name}", value)
-    monkeypatch.setattr(results.holder, "STATIC_FRICTION_FACTOR", 1.3)
+        monkeypatch.setattr(names_of(results).holder, f"HOLDER_{name}", value)
+    monkeypatch.setattr(names_of(results).holder, "STATIC_FRICTION_FACTOR", 1.3)
     assert results.holder_text() == (
         "a holder of 2 kN/m and 25 g, damping ratio 0.02; static friction 1.3 times that of sliding, falling over the"
         " sliding speed"
