@@ -123,6 +123,15 @@ def test_a_damaged_or_old_index_is_built_anew(tmp_path: Path, damage: str) -> No
     assert names(tmp_path) == before
 
 
+def test_an_index_that_is_whole_is_used_again_without_a_word(tmp_path: Path) -> None:
+    run_of(tmp_path)
+    assert query_runs(tmp_path).caveats == ()
+    made = (tmp_path / CATALOGUE).stat().st_ino
+    assert query_runs(tmp_path).caveats == ()
+    assert (tmp_path / CATALOGUE).stat().st_ino == made
+    assert sorted(path.name for path in tmp_path.glob("catalogue*")) == [CATALOGUE]
+
+
 def test_a_damaged_index_is_told_and_kept_aside(tmp_path: Path) -> None:
     run_of(tmp_path)
     (tmp_path / CATALOGUE).write_bytes(b"x" * 5000)

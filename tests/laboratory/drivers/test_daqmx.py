@@ -9,11 +9,11 @@ from nidaqmx.constants import TerminalConfiguration
 from pytest import MonkeyPatch, approx, raises
 from tests.laboratory.daqmx_device import CLOCK, DaqmxDevice, install
 
-from sonolube.errors import MissingPackage
+from sonolube.errors import InvalidInput, MissingPackage
 from sonolube.laboratory import DeviceError, DeviceLost, DriveSetting, SamplesLost
 from sonolube.laboratory.drivers import DaqmxAcquisition, DaqmxDrive, DaqmxMotor, DriveLimits
-from sonolube.laboratory.drivers.daqmx_acquisition import DaqmxAcquisitionEntry
-from sonolube.laboratory.drivers.daqmx_output import whole_periods
+from sonolube.laboratory.drivers.daqmx_acquisition import DaqmxAcquisitionEntry, tabulated_scale
+from sonolube.laboratory.drivers.daqmx_output import DaqmxDriveEntry, DaqmxMotorEntry, whole_periods
 
 LIMITS = DriveLimits(amplifier_gain=20.0, actuator_voltage=80.0, output_voltage=5.0, frequency_maximum=100e3)
 
@@ -189,3 +189,181 @@ def test_a_motor_turns_by_a_voltage_of_either_sign(card: DaqmxDevice) -> None:
     motor.off()
     assert card.is_off("Dev1/ao1")
     motor.close()
+
+
+def test_halting_sets_0_volt_without_any_guard_and_what_hung_starts_nothing_later(card: DaqmxDevice) -> None:
+    drive().halt()  # nothing is connected
+    assert "Dev1/ao0" not in card.outputs
+    here = drive()
+    here.connect()
+    here.drive(DriveSetting(voltage_peak_to_peak=28.0, frequency=22e3))
+    assert not card.is_off("Dev1/ao0")
+    here.halt()
+    assert card.is_off("Dev1/ao0")
+    assert card.calls["task_control"] == 1  # the waveform was aborted
+    with raises(DeviceError, match="was switched off while a call hung"):
+        here.drive(DriveSetting(voltage_peak_to_peak=28.0, frequency=22e3))
+    assert card.is_off("Dev1/ao0")
+    here.close()
+    still = drive()
+    still.connect()
+    card.outputs["Dev1/ao0"] = np.ones(1)
+    still.halt()
+    assert card.is_off("Dev1/ao0")
+    assert card.calls["task_control"] == 1  # nothing ran
+    still.close()
+
+
+def test_an_output_is_set_to_0_volt_when_it_is_connected_driven_by_none_and_closed(card: DaqmxDevice) -> None:
+    here = drive()
+    here.off()
+    assert "Dev1/ao0" not in card.outputs
+    with raises(DeviceError, match="connect it before driving"):
+        here.drive(DriveSetting(voltage_peak_to_peak=28.0, frequency=22e3))
+    card.outputs["Dev1/ao0"] = np.ones(1)
+    here.connect()
+    assert card.is_off("Dev1/ao0")
+    assert card.last is not None
+    assert card.last.ranges == [(-5.0, 5.0)]
+    written = card.calls["write_analog_f64"]
+    here.connect()
+    assert card.calls["write_analog_f64"] == written  # once
+    here.drive(DriveSetting(voltage_peak_to_peak=28.0, frequency=22e3))
+    assert not card.is_off("Dev1/ao0")
+    here.drive(DriveSetting(voltage_peak_to_peak=0.0, frequency=22e3))
+    assert card.is_off("Dev1/ao0")
+    here.drive(DriveSetting(voltage_peak_to_peak=28.0, frequency=22e3))
+    here.close()
+    assert card.is_off("Dev1/ao0")
+
+
+def test_an_output_that_cannot_be_set_is_not_connected(card: DaqmxDevice) -> None:
+    here = drive()
+    card.errors["write_analog_f64"] = -200077
+    with raises(DeviceError, match="-200077"):
+        here.connect()
+    card.errors.clear()
+    with raises(DeviceError, match="connect it before driving"):
+        here.drive(DriveSetting(voltage_peak_to_peak=28.0, frequency=22e3))
+
+
+def test_a_motor_turns_at_most_at_its_highest_speed_and_stands_at_0_volt(card: DaqmxDevice) -> None:
+    motor = DaqmxMotor(terminal="Dev1/ao1", rotation_speed_maximum=5.0, voltage_at_maximum=8.0)
+    with raises(DeviceError, match="connect it before turning"):
+        motor.turn(1.0)
+    motor.connect()
+    motor.turn(5.0 * (1 + 5e-10))
+    assert card.outputs["Dev1/ao1"].max() <= 8.0
+    motor.turn(1.25)
+    assert card.outputs["Dev1/ao1"] == approx([2.0])
+    for speed in (5.1, -0.1):
+        with raises(DeviceError, match="turns at 0 to 5 1/s"):
+            motor.turn(speed)
+    assert card.outputs["Dev1/ao1"] == approx([2.0])
+    motor.turn(0.0)
+    assert card.is_off("Dev1/ao1")
+    motor.close()
+
+
+def test_samples_are_scaled_channel_by_channel_also_where_one_call_cannot_take_them_all(card: DaqmxDevice) -> None:
+    slopes = {"Dev1/ai0": 1e-4, "Dev1/ai1": -2e-4}
+    card.voltage = lambda terminal, numbers: slopes[terminal] * numbers
+    here = acquisition()
+    with raises(DeviceError, match="connect it before sampling"):
+        here.start(["voltage"], sample_rate=1e3)
+    here.connect()
+    with raises(DeviceError, match="start it before reading"):
+        here.read(1)
+    rate = here.start(["voltage", "friction_force"], sample_rate=1e3)
+    assert card.last is not None
+    assert card.last.buffer == 4000  # four seconds
+    block = here.read(4500)  # two calls of 2000 and one of 500
+    assert card.calls["read_analog_f64"] == 3
+    numbers = np.arange(4500)
+    assert block.values[:, 0] == approx(-2 * -2e-4 * numbers)
+    assert block.values[:, 1] == approx(-2 * 1e-4 * numbers)
+    assert (block.first_sample, block.sample_rate) == (0, rate)
+    assert here.read(3).first_sample == 4500
+    with raises(DeviceError, match="0 samples cannot be read; at least 1"):
+        here.read(0)
+    here.start(["voltage"], sample_rate=100.0)
+    assert card.last.buffer == 1000  # at least
+    assert card.open_tasks == 1
+    here.stop()
+    with raises(DeviceError, match="start it before reading"):
+        here.read(1)
+    here.close()
+    with raises(DeviceError, match="connect it before sampling"):
+        here.start(["voltage"], sample_rate=1e3)
+
+
+@pytest.mark.parametrize(
+    ("channels", "rate", "reason"),
+    [
+        ([], 1e3, "needs at least one channel, each once, got none"),
+        (["current"], 1e3, "unknown channel 'current'"),
+        (["voltage"], 0.0, "0 Hz refused; it samples 1 channels at up to 500 kHz"),
+        (["voltage"], 501e3, "501 kHz refused; it samples 1 channels at up to 500 kHz"),
+    ],
+)
+def test_what_the_converter_cannot_sample_is_refused(
+    channels: list[str], rate: float, reason: str, card: DaqmxDevice
+) -> None:
+    here = acquisition()
+    here.connect()
+    with raises(DeviceError, match=reason):
+        here.start(channels, sample_rate=rate)
+    here.close()
+
+
+def test_an_acquisition_stands_in_words_for_the_record_and_knows_its_rates() -> None:
+    inputs = [
+        {"name": "friction_force", "input": "ai3", "gain": "-2 N/V", "offset": "1 N", "input_range": "5 V"},
+        {"name": "normal_load", "input": "ai0", "calibration": "load.csv"},
+    ]
+    content = {"driver": "daqmx", "device": "Dev7", "sample_rate_maximum": "500 kHz", "channels": inputs}
+    entry = DaqmxAcquisitionEntry.model_validate(content)
+    assert entry.described == "NI-DAQmx Dev7: friction_force ai3 -2 N/V +-5 V; normal_load ai0 load.csv +-10 V"
+    assert (entry.where, entry.reserved_as, entry.total_rate_maximum, entry.own_rate) == (
+        *("Dev7", "ni-daqmx dev7", 500e3, None),
+    )
+    assert dict(entry.files_beside) == {"channels[2].calibration": "load.csv"}
+    table = "voltage,normal_load\n-1 V,8 N\n3 V,0 N\n"
+    entry.check_file("channels[2].calibration", table)
+    with raises(InvalidInput, match="line 1: expected voltage,normal_load"):
+        entry.check_file("channels[2].calibration", "voltage,temperature\n")
+    channels = entry.new_device({"load.csv": table}).channels
+    assert (channels["friction_force"].lowest, channels["friction_force"].highest) == (-9.0, 11.0)
+    assert (channels["normal_load"].lowest, channels["normal_load"].highest) == (0.0, 8.0)
+    own = DaqmxAcquisitionEntry.model_validate(content | {"sample_rate": "250 kHz"})
+    assert (own.own_rate, own.channels[0].ranged(own.channels[0].scale({}), sample_rate=5.0).sample_rate) == (
+        250e3,
+        5.0,
+    )
+    with raises(ValueError, match="sample_rate is at most 250 kHz with 2 channels"):
+        DaqmxAcquisitionEntry.model_validate(content | {"sample_rate": "251 kHz"})
+
+
+def test_a_table_of_a_sensor_may_fall_and_has_two_points_at_least() -> None:
+    falling = tabulated_scale("voltage,normal_load\n-1 V,8 N\n3 V,0 N\n", quantity="normal_load")
+    assert falling(np.array([-2.0, 0.0, 3.0])) == approx([8.0, 6.0, 0.0])
+    free = tabulated_scale("voltage,emission\n0 V,0 m/s2\n2 V,30 m/s2", quantity="emission", unit="m/s2")
+    assert free(np.array([1.0])) == approx([15.0])
+    with raises(InvalidInput, match="1 points; expected 2 to 9999"):
+        tabulated_scale("voltage,normal_load\n-1 V,8 N\n", quantity="normal_load")
+    with raises(InvalidInput, match="line 3: expected a voltage and a reading, got 3 cells"):
+        tabulated_scale("voltage,normal_load\n-1 V,8 N\n0 V,1 N,2 N\n", quantity="normal_load")
+
+
+def test_an_output_as_drive_gives_frequencies_of_twenty_samples_and_a_motor_needs_a_voltage() -> None:
+    content = {"driver": "daqmx", "output": "Dev1/ao0", "sample_rate": "900 kHz", "voltage_maximum": "80 V"}
+    entry = DaqmxDriveEntry.model_validate(content | {"frequency_maximum": "100 kHz", "amplifier_gain": 20.0})
+    assert (entry.highest_frequency, entry.limits.frequency_maximum) == (45e3, 45e3)
+    assert DaqmxDriveEntry.model_validate(content | {"frequency_maximum": "10 kHz"}).highest_frequency == 10e3
+    assert (entry.where, entry.reserved_as, entry.guarded_output) == ("Dev1/ao0", "ni-daqmx dev1", "Dev1/ao0")
+    assert entry.new_device().voltage_maximum == 80.0
+    turning = {"driver": "daqmx", "output": "Dev1/ao1", "rotation_speed_maximum": "5 1/s", "groove_diameter": "50 mm"}
+    motor = DaqmxMotorEntry.model_validate(turning | {"voltage_at_maximum": "-0.1 V"})
+    assert (motor.voltage_at_maximum, motor.new_device().rotation_speed_maximum) == (-0.1, 5.0)
+    with raises(ValueError, match=r"voltage_at_maximum must be at least 0\.1 V, of either sign"):
+        DaqmxMotorEntry.model_validate(turning | {"voltage_at_maximum": "-0.09 V"})
