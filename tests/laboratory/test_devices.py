@@ -99,9 +99,9 @@ def test_the_first_reason_to_stop_is_kept_and_a_pause_lasts_until_it_is_resumed(
     control = RunControl()
     assert (control.stop_reason, control.is_paused) == ("", False)
     control.pause()
-    assert control.is_paused
+    paused = [control.is_paused]
     control.resume()
-    assert not control.is_paused
+    assert [*paused, control.is_paused] == [True, False]
     control.stop("first")
     control.stop("second")
     assert control.stop_reason == "first"

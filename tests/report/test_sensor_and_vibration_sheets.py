@@ -4,7 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pytest import approx, raises
+from pytest import raises
+from tests.same import approx
 
 from sonolube.charts import Bars, Chart, Line, Points, Rule
 from sonolube.errors import InvalidInput

@@ -267,7 +267,7 @@ def test_a_motor_turns_at_most_at_its_highest_speed_and_stands_at_0_volt(card: D
 
 def test_samples_are_scaled_channel_by_channel_also_where_one_call_cannot_take_them_all(card: DaqmxDevice) -> None:
     slopes = {"Dev1/ai0": 1e-4, "Dev1/ai1": -2e-4}
-    card.voltage = lambda terminal, numbers: slopes[terminal] * numbers
+    card.voltage = lambda terminal, numbers: np.asarray(slopes[terminal] * numbers, dtype=np.float64)
     here = acquisition()
     with raises(DeviceError, match="connect it before sampling"):
         here.start(["voltage"], sample_rate=1e3)

@@ -229,7 +229,7 @@ def test_materials_of_the_protocol_stand_in_for_those_that_nobody_else_knows(pow
     "changed",
     [{name: 0.0} for name in ("pin_heat_capacity", "pin_conductance", "actuator_conductance", "ambient_temperature")],
 )
-def test_a_heat_capacity_conductance_or_temperature_of_zero_is_refused(changed: dict[str, float]) -> None:
+def test_a_heat_capacity_conductance_or_temperature_of_zero_is_refused(changed: dict[str, Any]) -> None:
     with raises(InvalidInput, match=f"{next(iter(changed))} must be positive"):
         replace(ASSUMED, **changed)
     with raises(InvalidInput, match="loss_factor must not be negative"):
