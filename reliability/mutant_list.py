@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from reliability.mutation import ROOT, SOURCE, Mutant, entries_of, first_failure, sampled, tests_of
+from reliability.mutation import ROOT, SOURCE, Mutant, entries_of, first_failure, room_of, sampled, tests_of
 from reliability.reach import MAP, picked, reaching
 from reliability.study import Measure, Record, Study
 
@@ -144,8 +144,7 @@ def stages_of(mutant: Mutant, *, known: str = "") -> tuple[list[str], list[list[
     known : str
         A test that failed with it before, the first of its stage.
     """
-    parts = len(Path(mutant.file).parts[:2]) if mutant.file.startswith(("models", "facts")) else 1
-    room = "/".join(("tests", *Path(mutant.file).parts[:parts], ""))
+    room = f"tests/{room_of(mutant.file).as_posix()}/"
     row = mutant.row((SOURCE / mutant.file).read_text(encoding="utf-8"))
     own: list[str]
     if MAP.exists() and row is not None and (tests := reaching(mutant.file, row + 1)):

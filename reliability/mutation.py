@@ -319,6 +319,12 @@ def sampled(rooms: Mapping[str, int], *, kept: Sequence[Mutant] = (), seed: int 
                 yield mutant
 
 
+def room_of(file: str) -> Path:
+    """Folder of a module's room below src/sonolube, and of its tests below tests: models/contact, or rig."""
+    parts = Path(file).parts
+    return Path(*parts[: 2 if parts[0] in ("models", "facts") else 1])
+
+
 def tests_of(file: str) -> list[list[str]]:
     """Tests to run against a module in turn: its own, its room's, and last those above.
 
@@ -329,7 +335,7 @@ def tests_of(file: str) -> list[list[str]]:
     every = sorted(
         (ROOT / "tests").rglob("test_*.py"), key=lambda test: not names.search(test.read_text(encoding="utf-8"))
     )
-    room = [test for test in every if path.parts[:2] == test.relative_to(ROOT / "tests").parts[:2]]
+    room = [test for test in every if test.relative_to(ROOT / "tests").is_relative_to(room_of(file))]
     own = [test for test in room if test.stem == f"test_{path.stem}"]
     naming = [test for test in every if test not in room and names.search(test.read_text(encoding="utf-8"))]
     naming.sort(key=lambda test: _OTHER_TESTS[0] not in test.as_posix())
