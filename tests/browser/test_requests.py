@@ -64,7 +64,8 @@ def test_files_of_a_request_are_contents_uploads_or_none(tmp_path: Path) -> None
         ({"name": "a.csv", "content": 3}, "the content of 'a.csv' is not base64"),
         ({"name": "a.csv", "upload": "none"}, "'a.csv' is no longer here; drop the file again"),
         ({"name": "a.csv"}, "'a.csv' is no longer here"),
-        ({"name": ".hidden", "content": "YQ=="}, "is no name of a file"),
+        ({"name": ".hidden", "content": "YQ=="}, "'.hidden' is no name of a file"),
+        ({"name": ".hidden", "upload": "00ff"}, "'.hidden' is no name of a file"),
     ):  # fmt: skip
         with raises(InvalidInput, match=words):
             given("measure friction", {"files": [file]}, places)

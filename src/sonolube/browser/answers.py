@@ -211,8 +211,9 @@ def _file(name: str, value: Any, places: Places) -> Any:
     if not isinstance(value, Mapping) or not isinstance(value.get("name"), str):
         raise InvalidInput(f"{name}: give an object with the name of an upload, or a name and its content", key=name)
     if "content" in value:
+        plain = _plain_name(value["name"])
         try:
-            return NamedBytes(_plain_name(value["name"]), base64.b64decode(value["content"], validate=True))
+            return NamedBytes(plain, base64.b64decode(value["content"], validate=True))
         except (binascii.Error, TypeError, ValueError):
             raise InvalidInput(f"{name}: the content of {value['name']!r} is not base64", key=name) from None
     upload = value.get("upload")
