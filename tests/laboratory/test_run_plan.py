@@ -193,7 +193,7 @@ def test_the_record_of_a_plan_has_its_files_and_everything_that_is_known_of_it(t
     recorder = begin_record(plan, devices, out=tmp_path / "runs", facts={"queue": 3})
     run = read_run(recorder.finish("completed").folder)
     assert run.summary.title == "a test"
-    assert set(run.known.files) == {"protocol.toml", "rig.toml", "devices.toml"}
+    assert set(run.known.files) == {"protocol.toml", "devices.toml"}  # a rig that was changed has no file
     assert dict(run.facts) == {
         "protocol": "map_test",
         "simulated": True,
@@ -231,4 +231,6 @@ def test_the_record_of_a_plan_without_rig_tags_or_simulation_has_none_of_their_f
     }
     assert set(run.known.files) == {"protocol.toml"}
     of_rig = RunPlan(protocol=protocol(voltage_maximum="100 V"), name="t", rig=read_rig(RIG))
-    assert read_run(begin_record(of_rig, devices, out=tmp_path).finish("completed").folder).facts["normal_load"] == 5.0
+    with_rig = read_run(begin_record(of_rig, devices, out=tmp_path).finish("completed").folder)
+    assert with_rig.facts["normal_load"] == 5.0
+    assert set(with_rig.known.files) == {"protocol.toml", "rig.toml"}
