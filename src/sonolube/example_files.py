@@ -20,6 +20,11 @@ _SCHEMA: Final = "#:schema"  # begins a line whose relative path holds only wher
 _UNIT: Final = re.compile(r"\s*\[[^\]]*\]")
 
 
+def without_schema(text: str) -> str:
+    """Text of a TOML file without the line that names its schema to editors."""
+    return "".join(line for line in text.splitlines(keepends=True) if not line.startswith(_SCHEMA))
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExampleFile:
     """One example file.
@@ -53,8 +58,7 @@ class ExampleFile:
     @property
     def text(self) -> str:
         """Content."""
-        lines = self.source.read_text(encoding="utf-8").splitlines(keepends=True)
-        return "".join(line for line in lines if not line.startswith(_SCHEMA))
+        return without_schema(self.source.read_text(encoding="utf-8"))
 
     @property
     def title(self) -> str:

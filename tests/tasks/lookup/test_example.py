@@ -67,7 +67,12 @@ def test_a_rig_is_written_where_help_texts_look_for_it(folder: Path, sonolube: P
     assert "  try: sonolube wear examples/rigs/tribometer.toml" in written
     assert Path(written[-1].strip()) == Path("examples/rigs/tribometer.toml")
     assert sonolube("contact", "examples/rigs/tribometer.toml").code == 0
-    assert [path.name for path in folder.rglob("*.*")] == ["tribometer.toml"]
+    (path,) = folder.rglob("*.*")
+    assert path.name == "tribometer.toml"
+    path.write_text("#:schema rig.schema.json\n" + path.read_text(encoding="utf-8"), encoding="utf-8")
+    assert sonolube("example", "tribometer").code == 0  # the line of an editor is no change
+    path.write_text("# mine\n" + path.read_text(encoding="utf-8"), encoding="utf-8")
+    assert "tribometer.toml: has other content" in sonolube("example", "tribometer").refusal
 
 
 def test_the_schema_of_editors_is_not_looked_for_where_it_is_not() -> None:

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Annotated, Any
 
-from sonolube.example_files import ExampleFile, example_file, example_files
+from sonolube.example_files import ExampleFile, example_file, example_files, without_schema
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, Verbatim, answer
 from sonolube.tasks.parameters import Parameter
 from sonolube.tasks.table import TASKS
@@ -70,8 +70,8 @@ class ExampleAnswer(Answer):
         return {each.path: each.text for one in self.examples for each in (one, *one.companions())}
 
     def keeps(self, name: str, present: str) -> bool:
-        """Whether a file was changed since it was written."""
-        return present != self.files().get(name)
+        """Whether a file was changed since it was written; the line that names a schema is no change."""
+        return without_schema(present) != self.files().get(name)
 
     def dataset(self) -> Dataset:
         """Paths and titles by name."""
