@@ -80,7 +80,7 @@ def test_a_test_is_daily_by_its_cost_its_function_and_its_file() -> None:
     }  # fmt: skip
     daily = daily_tests(costs)
     options = {name for name in daily if name.startswith("d.py")}
-    assert len(options) == 40  # 40 times 0.5 s are 20 s
+    assert len(options) == 16  # 16 times 0.5 s are 8 s
     assert daily - options == {"a.py::test_quick", "a.py::test_slow[3]", "b.py::test_slowest"}
 
 
