@@ -10,7 +10,7 @@ import sqlite3
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import closing
+from contextlib import closing, suppress
 from pathlib import Path
 
 import coverage
@@ -81,11 +81,17 @@ def make(tests: Sequence[str]) -> None:
     environment = {**os.environ, "SONOLUBE_REACH": str(settings), "OPENBLAS_NUM_THREADS": "1", "MPLBACKEND": "Agg"}
     command = [sys.executable, "-m", "pytest", "-q", "-p", "reliability.reach", "-n", "2", "--dist", "worksteal"]
     subprocess.run([*command, *tests], cwd=ROOT, env=environment, check=False)
+    _combine()
+
+
+def _combine() -> None:
+    """Write the map from what the processes of the tests have measured."""
     combined = coverage.CoverageData(basename=str(_PARTS / "combined"))
     for part in sorted(_PARTS.glob("coverage.*")):
         data = coverage.CoverageData(basename=str(part))
-        data.read()
-        combined.update(data)
+        with suppress(coverage.exceptions.DataError):  # of a program that a test has killed
+            data.read()
+            combined.update(data)
     timed = [line.split(" ", 1) for line in (_PARTS / "seconds").read_text("utf-8").splitlines()]
     _write(combined, {name: float(seconds) for seconds, name in timed})
 
