@@ -108,13 +108,25 @@ class GpuUnused(UserWarning):
     """A GPU was requested but the processor was used; the results are the same, the computation slower."""
 
 
+def words_of(failure: BaseException) -> str:
+    """What an exception says, in one line; empty where it says nothing, or its text fails."""
+    try:
+        return " ".join(str(failure).split())
+    except BaseException:  # of a class of another package
+        return ""
+
+
 def fault_line(failure: BaseException) -> str:
-    """Line on an exception that no refusal foresees: a fault of the program with its kind and place, to be reported."""
-    text = " ".join(str(failure).split())[:_LONGEST]
+    """Line on an exception that no refusal foresees: a fault of the program with its kind and place, to be reported.
+
+    What was noted of the exception, such as whether motor and drive are off, stands first.
+    """
+    text = words_of(failure)[:_LONGEST]
     told = f"{type(failure).__name__} ({text})" if text else type(failure).__name__
+    noted = "".join(f"{note}; " for note in getattr(failure, "__notes__", ()))
     return (
-        f"a fault of sonolube itself, not of your input: {told}{_place_of(failure)}; please report it with this line"
-        " and what you asked for, by the form Fault on the page of the repository"
+        f"{noted}a fault of sonolube itself, not of your input: {told}{_place_of(failure)}; please report it with this"
+        " line and what you asked for, by the form Fault on the page of the repository"
     )
 
 

@@ -217,7 +217,7 @@ def test_the_page_of_a_run_stops_it_without_scripts_when_the_server_is_gone(
     form = {"cookie": cookie, "content_type": "application/x-www-form-urlencoded"}
     status, _, body = page.raw("POST", "/stop", b"", **form, origin=f"http://127.0.0.1:{page.port}")
     assert status == 200
-    assert "The run has ended: motor and drive are off" in body.decode() or "Stopping: " in body.decode()
+    assert "The run has ended; motor and drive: " in body.decode() or "Stopping: " in body.decode()
     until(lambda: not process_start(run["process"]))
     with laboratory(tmp_path) as lab:
         ended = lab.state()["run"]

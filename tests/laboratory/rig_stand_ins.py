@@ -18,6 +18,7 @@ from sonolube.laboratory.drivers import FunctionGenerator, LineMotor, read_devic
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "lab" / "devices.toml"
 GAIN = 20.0  # of the amplifier, V/V
+MONITOR = "ai2"  # input of its monitor
 OUTPUTS = """
 [drive]
 driver = "daqmx"
@@ -58,12 +59,20 @@ def voltages(terminal: str, numbers: NDArray[np.int64]) -> NDArray[np.float64]:
     return np.asarray(1e-3 * numbers + float(terminal[-1]), dtype=np.float64)
 
 
+def with_monitor(is_off: Callable[[], bool]) -> Callable[[str, NDArray[np.int64]], NDArray[np.float64]]:
+    """Voltages at the inputs, 0 at the monitor of the amplifier while the drive is off."""
+    return lambda terminal, numbers: (
+        voltages(terminal, numbers) * (0.0 if terminal.endswith(MONITOR) and is_off() else 1.0)
+    )
+
+
 @contextmanager
 def analogue_rig(folder: Path) -> Iterator[StandIn]:
     """All devices on one card of NI-DAQmx."""
     with ExitStack() as after:
         card = after.enter_context(_card())
         devices = read_device_map(_map(folder, OUTPUTS)).devices()
+        card.voltage = with_monitor(lambda: not np.any(card.outputs.get("Dev1/ao0", 0.0)))
 
         def was_on() -> None:
             card.outputs |= {"Dev1/ao0": np.ones(1), "Dev1/ao1": np.ones(1)}
@@ -96,6 +105,7 @@ def instrument_rig(folder: Path) -> Iterator[StandIn]:
         outputs = outputs.replace("TCPIP::192.168.1.21::5025::SOCKET", server.resource)
         outputs = outputs.replace("ASRL/dev/ttyUSB0::INSTR", port.resource)
         devices = read_device_map(_map(folder, f"[drive]{outputs}")).devices()
+        card.voltage = with_monitor(lambda: not generator.is_on)
 
         instruments = [
             each for each in (devices.drive, devices.motor) if isinstance(each, FunctionGenerator | LineMotor)
@@ -129,7 +139,7 @@ HARDWARE = {"analogue": analogue_rig, "instruments": instrument_rig}
 def _card() -> Iterator[DaqmxDevice]:
     """Card with known voltages at its inputs."""
     card = DaqmxDevice()
-    card.voltage = voltages
+    card.voltage = voltages  # the monitor of the amplifier, too, until a rig says when it is at rest
     with MonkeyPatch.context() as patch:
         install(card, patch)
         yield card

@@ -8,7 +8,7 @@ import pytest
 from pytest import raises
 from tests.laboratory.simulated_rig import SimulatedRig
 
-from sonolube.errors import InvalidInput
+from sonolube.errors import InvalidInput, fault_line
 from sonolube.facts.protocol import Limits
 from sonolube.laboratory import Block, Channel, DeviceError, Devices, RunControl, connect_devices
 from sonolube.laboratory.block import quantity_of
@@ -55,7 +55,7 @@ def test_inputs_are_connected_before_any_output() -> None:
 
 def test_both_outputs_are_switched_off_although_one_fails_and_the_failure_is_named() -> None:
     heard: list[str] = []
-    assert switch_outputs_off(devices(heard, drive=["off"])) == ["drive: off is broken"]
+    assert switch_outputs_off(devices(heard, drive=["off"])) == ["drive: RuntimeError: off is broken"]
     assert heard == ["drive off", "motor off"]
     heard.clear()
     assert switch_outputs_off(devices(heard)) == []
@@ -77,7 +77,8 @@ def test_all_devices_are_released_outputs_first_although_some_fail() -> None:
         (RunEnded(Event.STOP, "enough"), Event.STOP, "enough"),
         (DeviceError("no answer"), Event.DEVICE_ERROR, "no answer"),
         (InvalidInput("disk full"), Event.CRASH, "disk full"),
-        (ValueError("odd"), Event.CRASH, "ValueError: odd"),
+        (ValueError("odd"), Event.CRASH, fault_line(ValueError("odd"))),
+        (KeyboardInterrupt(), Event.STOP, "interrupted"),
     ],
 )
 def test_a_run_ends_by_what_was_raised(failure: BaseException, event: Event, reason: str) -> None:

@@ -42,7 +42,7 @@ class PacedRig(SimulatedRig):
     began = 0.0
 
     def start(self, channels: Sequence[str], *, sample_rate: float) -> float:
-        self.began = time.monotonic()
+        self.began = self.began or time.monotonic()  # of the run; it starts anew to see its outputs off
         return super().start(channels, sample_rate=sample_rate)
 
     def read(self, samples: int) -> Block:

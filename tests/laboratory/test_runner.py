@@ -11,7 +11,7 @@ import pytest
 from pytest import raises
 from tests.laboratory.simulated_rig import Fault, MemoryRecord, SimulatedRig
 
-from sonolube.errors import InvalidInput
+from sonolube.errors import InvalidInput, fault_line
 from sonolube.facts.protocol import Prompt, Protocol, protocol_from
 from sonolube.laboratory import Block, Channel, RunControl, RunState, State, run_protocol
 from sonolube.laboratory.block import quantity_of
@@ -87,14 +87,44 @@ def test_a_device_that_answers_no_more_ends_the_run_with_everything_off(call: in
     assert record.notes[-1][1]["state"] == "safe"
 
 
-@pytest.mark.parametrize("error", [RuntimeError("a fault of the program"), KeyboardInterrupt(), MemoryError()])
-def test_a_crash_switches_everything_off_and_closes_the_record(error: BaseException) -> None:
+class WordlessError(Exception):
+    def __str__(self) -> str:
+        raise ValueError("an exception whose text fails")
+
+
+WORD = "motor and drive: confirmed off, drive measured off; motor by the device's own word, not measured"
+ANY = [
+    RuntimeError("short circuit"),
+    OSError(19, "no such device"),
+    WordlessError(),
+    MemoryError(),
+    KeyboardInterrupt(),
+]
+
+
+@pytest.mark.parametrize("error", [*ANY, SystemExit(3), GeneratorExit()], ids=lambda error: type(error).__name__)
+def test_whatever_a_device_raises_ends_the_run_with_everything_off_in_one_line(error: BaseException) -> None:
     rig, record = SimulatedRig(fault=Fault(call=30, error=error, stays_dead=False)), MemoryRecord()
-    with raises(type(error)):
-        run_protocol(protocol(), rig.devices(), record, operator=lambda prompt: True)
+    result = run_protocol(protocol(), rig.devices(), record, operator=lambda prompt: True)
     assert rig.is_off
-    assert record.outcome == "failed"
-    assert type(error).__name__ in record.reason
+    assert (result.state, result.outcome, record.outcome) == (State.SAFE, "failed", "failed")
+    assert result.reason.startswith(f"simulated rig: read: {type(error).__name__}")
+    assert "\n" not in result.reason
+
+
+@pytest.mark.parametrize("failure", [ZeroDivisionError("a fault"), KeyboardInterrupt(), SystemExit(3)], ids=repr)
+def test_a_fault_of_the_program_passes_with_the_verdict_and_ends_the_run(failure: BaseException) -> None:
+    def fails(stage: str, done: int, total: int) -> None:
+        if done > 5_000:
+            raise failure
+
+    rig, record = SimulatedRig(), MemoryRecord()
+    with raises(type(failure)) as raised:
+        run_protocol(protocol(), rig.devices(), record, operator=lambda prompt: True, advance=fails)
+    assert raised.value.__notes__ == [WORD]
+    assert fault_line(raised.value).startswith(f"{WORD}; a fault of sonolube itself")
+    assert rig.is_off
+    assert record.outcome == ("stopped" if isinstance(failure, KeyboardInterrupt) else "failed")
 
 
 def test_a_device_that_cannot_be_switched_off_is_told() -> None:
@@ -371,3 +401,24 @@ def test_a_signal_ends_the_run_after_the_present_block_and_handlers_are_as_befor
     assert result.reason in ("interrupted", "terminated")
     assert sum(record.samples()) == 1020 - WATCHED
     assert signal.getsignal(number) is signal.default_int_handler
+
+
+OTHERS = ("SIGQUIT", "SIGTSTP", "SIGUSR1", "SIGUSR2", "SIGALRM", "SIGXCPU", "SIGVTALRM", "SIGTTIN", "SIGTTOU")
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGQUIT"), reason="Windows has no such signals")
+@pytest.mark.parametrize("name", OTHERS)
+def test_a_signal_that_would_end_or_stop_the_process_ends_the_run_in_order(name: str) -> None:
+    number = getattr(signal, name)
+
+    class Signalled(SimulatedRig):
+        def read(self, samples: int) -> Block:
+            if self.total in (1000, 1020):
+                signal.raise_signal(number)  # also once more, while the outputs are being switched off
+            return super().read(samples)
+
+    told = {"SIGQUIT": "ended by Ctrl-\\", "SIGTSTP": "suspended by Ctrl-Z"}.get(name, f"ended by {name}")
+    result, rig, _ = run(protocol(), Signalled())
+    assert (result.state, result.outcome, result.reason) == (State.SAFE, "stopped", told)
+    assert rig.is_off
+    assert signal.getsignal(number) is signal.SIG_DFL

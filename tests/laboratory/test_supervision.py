@@ -12,6 +12,7 @@ from tests.laboratory.supervised_clock import Clock
 from sonolube.facts.protocol import protocol_from
 from sonolube.laboratory import Block, Devices, DriveSetting, RunState, State, run_protocol, supervision
 from sonolube.laboratory.supervision import Supervisor
+from sonolube.laboratory.verdict import Outputs, Verdict
 
 STEPS = [
     {"kind": "acquire", "channels": ["friction_force"], "sample_rate": "400 Hz", "duration": "4.5 s"},
@@ -24,7 +25,7 @@ STEPS = [
 LIMITS = {"voltage_maximum": "30 V", "duration_maximum": "1 min"}
 PROTOCOL = protocol_from({"title": "test", "source": "test", "limits": LIMITS, "steps": STEPS})
 MOMENT = 1.0  # s, for outputs that never answer
-ENDED = "; the supervisor has switched motor and drive off"
+ENDED = "; the supervisor has told motor and drive to switch off"
 
 
 @fixture(autouse=True)
@@ -103,24 +104,57 @@ def test_a_run_in_time_is_left_alone(release: Event, clock: Clock) -> None:
     assert not rig.halted.is_set()
 
 
-@pytest.mark.parametrize(
-    ("hangs", "what"),
-    [
-        ("read", "simulated rig: a block is late by more than 2 s"),
-        ("drive", "simulated rig: drive did not return within 2.05 s"),
-    ],
-)
-def test_outputs_are_off_and_the_run_ends_although_a_call_never_returns(
-    hangs: str, what: str, release: Event, clock: Clock
-) -> None:
-    rig, record = HangingRig(hangs, release, clock), MemoryRecord()
-    result = run(rig, record)
+def test_outputs_are_off_and_the_run_ends_although_a_block_never_comes(release: Event, clock: Clock) -> None:
+    rig = HangingRig("read", release, clock)
+    result = run(rig)
     assert (result.state, result.outcome) == (State.SAFE, "failed")
-    assert result.reason.startswith(what)
-    assert result.reason.endswith(ENDED)
+    assert result.reason == f"simulated rig: a block is late by more than 2 s{ENDED}"
+    assert result.verdict == Verdict(Outputs.CONFIRMED_OFF, "drive and motor by the device's own word, not measured")
     assert rig.halted.is_set()
     assert rig.is_off
     assert not release.is_set()  # the call still hangs
+
+
+def test_nothing_is_off_while_a_setting_may_still_be_made(
+    release: Event, clock: Clock, monkeypatch: MonkeyPatch
+) -> None:
+    monkeypatch.setattr(supervision, "_RETURNING", 0.2)
+    rig = HangingRig("drive", release, clock)
+    result = run(rig)
+    assert rig.halted.is_set()
+    assert (result.state, result.outcome) == (State.FAILED, "failed")
+    assert result.reason.startswith(f"simulated rig: drive did not return within 2.05 s{ENDED}; cut the power: ")
+    assert result.verdict == Verdict(
+        Outputs.CUT_THE_POWER, "simulated rig: drive has not returned, and may switch on when it does"
+    )
+
+
+@pytest.mark.parametrize("has_halt", [True, False])
+def test_a_setting_that_is_made_after_the_outputs_were_switched_off_is_undone(
+    has_halt: bool, release: Event, clock: Clock
+) -> None:
+    class Late(HangingRig):
+        """Rig that sets the drive long after it was asked to, when it was switched off meanwhile."""
+
+        def drive(self, setting: DriveSetting) -> None:
+            self.clock.now += 1e5
+            assert switched_off.wait(MOMENT)
+            super().drive(setting)
+
+        def off(self) -> None:
+            super().off()
+            switched_off.set()
+
+        def _halt(self) -> None:
+            super()._halt()
+            switched_off.set()
+
+    switched_off = Event()
+    rig = Late("nothing", release, clock, has_halt=has_halt)
+    result = run(rig)
+    assert rig.calls.count("drive 10 V") == 1
+    assert rig.is_off
+    assert (result.state, result.outcome) == (State.SAFE, "failed")
 
 
 def test_an_output_without_a_way_of_its_own_is_switched_off_by_another_thread(release: Event, clock: Clock) -> None:

@@ -31,4 +31,5 @@ from .states import (
     after as after,
 )
 from .supervised_run import Sampling as Sampling
+from .verdict import Outputs as Outputs, Verdict as Verdict, exit_code as exit_code, verdict_text as verdict_text
 from .watching import RunWatcher as RunWatcher

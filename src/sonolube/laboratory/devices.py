@@ -12,7 +12,7 @@ from typing import Final, Protocol
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.errors import SonolubeError
+from sonolube.errors import SonolubeError, words_of
 from sonolube.facts.protocol import Prompt
 from sonolube.laboratory.block import Block, Channel
 
@@ -37,6 +37,14 @@ class DeviceError(SonolubeError):
 
 class DeviceLost(DeviceError):
     """A device that answers no more."""
+
+
+def fault_of(name: str, failure: BaseException) -> str:
+    """What a device or a call to it has raised, behind its name; of any exception."""
+    words = words_of(failure)
+    if not isinstance(failure, SonolubeError):
+        words = f"{type(failure).__name__}: {words}".removesuffix(": ")
+    return words if words.startswith(name) else f"{name}: {words}"
 
 
 class SamplesLost(DeviceError):
@@ -274,6 +282,6 @@ def switch_outputs_off(devices: Devices) -> list[str]:
     for device in (devices.drive, devices.motor):
         try:
             device.off()
-        except Exception as failure:  # whatever a driver raises, the next device must be switched off
-            failures.append(f"{device.name}: {failure}")
+        except BaseException as failure:  # whatever a driver raises, the next device must be switched off
+            failures.append(fault_of(device.name, failure))
     return failures

@@ -19,7 +19,8 @@ SAMPLES_PER_PERIOD: Final = 5
 IDLE_RATE: Final = 1000.0
 """Sample rate of protocols that record nothing. [Hz]"""
 
-_WAVES: Final = ("voltage", "current")  # channels whose samples are values of the wave itself
+WAVES: Final = ("voltage", "current")
+"""Channels whose samples are values of the wave itself."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -64,7 +65,7 @@ class DriveSampling:
 
     def caveat(self, channels: Iterable[str]) -> str:
         """Caveat of channels of voltage and current that do not show the drive, in one line; empty where they do."""
-        blind = [name for name in _WAVES if name in set(channels)]
+        blind = [name for name in WAVES if name in set(channels)]
         if self.is_resolved or not blind:
             return ""
         them = f"{' and '.join(blind)} at {format_si(self.sample_rate, 'Hz')} {'do' if len(blind) > 1 else 'does'}"

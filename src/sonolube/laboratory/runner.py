@@ -102,6 +102,8 @@ class _Run(SupervisedRun):
         super().__init__(devices, recorder, control, watcher)
         self._protocol, self._operator = protocol, operator
         self._points = flattened(protocol)
+        self._limits = protocol.limits
+        self._frequency = max((point.frequency or 0.0 for point in self._points), default=0.0)
         self._point = self._points[0]
         self._diameter = groove_diameter(protocol, devices)
         locks = interlocks_for(protocol.limits, devices.channels, drive_sampling(protocol))

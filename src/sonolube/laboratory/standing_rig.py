@@ -6,10 +6,11 @@ from math import inf
 from threading import Event as Signal, Thread
 from typing import Final
 
+from sonolube.errors import SonolubeError
 from sonolube.facts.protocol import Limits
 from sonolube.laboratory.block import BLOCK_DURATION, Block
-from sonolube.laboratory.devices import Devices
-from sonolube.laboratory.interlocks import IDLE_RATE, Interlock, first_trip
+from sonolube.laboratory.devices import Acquisition, Devices
+from sonolube.laboratory.interlocks import IDLE_RATE, SAMPLES_PER_PERIOD, WAVES, Interlock, first_trip
 from sonolube.laboratory.states import Event, RunControl, RunEnded, ending
 from sonolube.laboratory.watching import RunWatcher, told
 from sonolube.text.units import format_si
@@ -104,6 +105,48 @@ def off_bounds(devices: Devices, limits: Limits) -> list[tuple[str, Interlock]]:
         "rotation_speed": ("motor", _STILL_SHARE * devices.motor.rotation_speed_maximum),
     }
     return [(what, Interlock(channels[name], most)) for name, (what, most) in at_rest.items() if name in channels]
+
+
+def measured_outputs(devices: Devices, limits: Limits, *, frequency: float) -> dict[str, str]:
+    """Outputs that channels of the acquisition show after they were switched off.
+
+    Parameters
+    ----------
+    devices : Devices
+    limits : Limits
+    frequency : float
+        Highest that the drive had; samples of its voltage show it from five a period on. [Hz]
+
+    Returns
+    -------
+    dict of str to str
+        By output, empty where it is off, else why it counts as on; outputs that no channel shows are left out.
+    """
+    channels = devices.acquisition.channels
+    shown = [(what, lock) for what, lock in off_bounds(devices, limits) if lock.channel.name in channels]
+    fast = max(IDLE_RATE, SAMPLES_PER_PERIOD * frequency)
+    slowly = [(what, lock) for what, lock in shown if lock.channel.name not in WAVES]
+    found = _seen(devices.acquisition, shown, rate=fast)
+    return found if found or len(slowly) == len(shown) else _seen(devices.acquisition, slowly, rate=IDLE_RATE)
+
+
+def _seen(acquisition: Acquisition, bounds: Sequence[tuple[str, Interlock]], *, rate: float) -> dict[str, str]:
+    """Whether outputs come to rest by channels sampled at a rate or more; empty where the acquisition cannot tell."""
+    names, on, time = [lock.channel.name for _, lock in bounds], {what: "not seen" for what, _ in bounds}, 0.0
+    if not on:
+        return {}
+    try:
+        acquisition.stop()
+        given = acquisition.start(names, sample_rate=rate)
+        if given < rate * (1 - 1e-9):
+            return {}
+        while any(on.values()) and time <= max(SETTLING[what] for what in on):
+            block = acquisition.read(max(1, round(BLOCK_DURATION * given)))
+            time += block.samples / given
+            on = {what: still_on(block, names, [each for each in bounds if each[0] == what], inf) for what in on}
+    except SonolubeError:
+        return {}  # what answers no more shows nothing
+    return on
 
 
 def still_on(block: Block, names: Sequence[str], off: Sequence[tuple[str, Interlock]], stands: float) -> str:

@@ -10,8 +10,9 @@ from threading import Event as Signal
 from types import MappingProxyType
 from typing import Final
 
-from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.errors import InvalidInput, SonolubeError, fault_line, words_of
 from sonolube.laboratory.devices import DeviceError, Devices
+from sonolube.laboratory.verdict import Verdict
 
 
 class State(Enum):
@@ -88,11 +89,14 @@ class RunState:
         completed, stopped or failed, by the first event that ended the run; empty before.
     reason : str
         Why it ended before its protocol.
+    verdict : Verdict or None
+        On motor and drive, after the end; None before it, and where the run connected no device.
     """
 
     state: State = State.IDLE
     outcome: str = ""
     reason: str = ""
+    verdict: Verdict | None = None
 
 
 def after(present: RunState, event: Event, *, reason: str = "") -> RunState:
@@ -121,7 +125,7 @@ def after(present: RunState, event: Event, *, reason: str = "") -> RunState:
     if event is Event.RESET:
         return RunState()
     if event is Event.NOT_OFF:
-        return RunState(state, "failed", "; ".join(filter(None, (present.reason, reason))))
+        return replace(present, state=state, outcome="failed", reason="; ".join(filter(None, (present.reason, reason))))
     if event in OUTCOMES and not present.outcome and state is State.STOPPING:
         return RunState(state, OUTCOMES[event], reason)
     return replace(present, state=state)
@@ -176,11 +180,11 @@ def ending(failure: BaseException) -> tuple[Event, str]:
     """Event and reason by which a run ends."""
     if isinstance(failure, RunEnded):
         return failure.event, str(failure)
-    if isinstance(failure, DeviceError):
-        return Event.DEVICE_ERROR, str(failure)
+    if isinstance(failure, KeyboardInterrupt):
+        return Event.STOP, "interrupted"
     if isinstance(failure, SonolubeError):
-        return Event.CRASH, str(failure)
-    return Event.CRASH, f"{type(failure).__name__}: {failure}"
+        return Event.DEVICE_ERROR if isinstance(failure, DeviceError) else Event.CRASH, words_of(failure)
+    return Event.CRASH, fault_line(failure)
 
 
 def release_devices(devices: Devices, *before: Callable[[], object]) -> list[str]:
@@ -194,6 +198,6 @@ def tried(*calls: Callable[[], object]) -> list[str]:
     for call in calls:
         try:
             call()
-        except Exception as failure:  # whatever a driver raises, the others must be released
-            failures.append(str(failure))
+        except BaseException as failure:  # whatever a driver raises, the others must be released
+            failures.append(words_of(failure))
     return failures

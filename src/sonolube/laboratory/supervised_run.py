@@ -6,11 +6,13 @@ Blocks are held to the sample counter and to the limits, and recorded where a st
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
+from dataclasses import replace
 
 import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import SonolubeError
+from sonolube.facts.protocol import Limits
 from sonolube.laboratory.block import BLOCK_DURATION, Block
 from sonolube.laboratory.devices import (
     Acquisition,
@@ -23,6 +25,7 @@ from sonolube.laboratory.devices import (
 from sonolube.laboratory.interlocks import Interlock, first_trip
 from sonolube.laboratory.own_clocks import OwnClocks
 from sonolube.laboratory.run_plan import reserved
+from sonolube.laboratory.standing_rig import measured_outputs
 from sonolube.laboratory.states import (
     Event,
     RunControl,
@@ -35,6 +38,7 @@ from sonolube.laboratory.states import (
     tried,
 )
 from sonolube.laboratory.supervision import Supervisor
+from sonolube.laboratory.verdict import Verdict, verdict_on, verdict_text
 from sonolube.laboratory.watching import RunWatcher, told
 
 
@@ -216,6 +220,8 @@ class SupervisedRun(ABC):
 
     _clocks: OwnClocks
     _sampling: Sampling
+    _limits: Limits
+    _frequency: float  # highest of the drive, in Hz; 0 without one
 
     def __init__(
         self, devices: Devices, recorder: Recorder | None, control: RunControl, watcher: RunWatcher | None = None
@@ -238,6 +244,7 @@ class SupervisedRun(ABC):
 
     def _complete(self, advance: Advance | None) -> None:
         """Follow the run to its end, whatever that is."""
+        fault: BaseException | None = None
         with self._supervisor.at_work(), ExitStack() as held:
             try:
                 self._happens(Event.START)
@@ -251,16 +258,19 @@ class SupervisedRun(ABC):
                 self._happens(Event.COMPLETED)
             except BaseException as failure:
                 self._happens(*ending(failure))
-                if not isinstance(failure, SonolubeError):
-                    raise
+                fault = None if isinstance(failure, SonolubeError) else failure
             finally:
                 self._close()
+        if fault is not None:  # of the program, or of a function of the caller
+            fault.add_note(f"motor and drive: {verdict_text(self._present.verdict)}")
+            raise fault
 
     def _happens(self, event: Event, reason: str = "") -> None:
         """Change the state of the run by an event, and note it."""
         self._present = after(self._present, event, reason=reason)
         if event is not Event.START:
-            self._note(event.value, reason=reason, state=self._present.state.value)
+            verdict = {"outputs": verdict_text(self._present.verdict)} if event in (Event.OFF, Event.NOT_OFF) else {}
+            self._note(event.value, reason=reason, state=self._present.state.value, **verdict)
 
     def _note(self, kind: str, **facts: str | float) -> None:
         """Note what happened; while a run ends, a record that cannot be written is no hindrance."""
@@ -288,12 +298,20 @@ class SupervisedRun(ABC):
         """Switch drive and motor off where they were connected, and return what failed; never raises."""
         return switch_outputs_off(self._devices) if self._is_connected else []
 
+    def _verdict(self) -> Verdict:
+        """Switch motor and drive off, and say what is known of them then."""
+        failures = [*self._switch_off(), *self._supervisor.settle()]
+        measured = {} if failures else measured_outputs(self._devices, self._limits, frequency=self._frequency)
+        return verdict_on(failures, measured)
+
     def _close(self) -> None:
         """Switch everything off, release the devices and close the record."""
-        failures = self._switch_off()
+        verdict = self._verdict() if self._is_connected else None
         before = self._sampling.stop, self._clocks.end
         for reason in release_devices(self._devices, *before) if self._is_connected else tried(*before):
             self._note(Event.DEVICE_ERROR.value, reason=reason)
-        self._happens(Event.NOT_OFF if failures else Event.OFF, "; ".join(failures))
+        is_off = verdict is None or verdict.is_off
+        self._present = replace(self._present, verdict=verdict)
+        self._happens(Event.OFF if is_off else Event.NOT_OFF, "" if verdict is None or is_off else verdict.text)
         if self._recorder is not None:
             self._recorder.finish(self._present.outcome, reason=self._present.reason)

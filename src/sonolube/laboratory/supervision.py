@@ -12,11 +12,12 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from math import inf
 from queue import SimpleQueue
-from threading import Condition, Thread
+from threading import Condition, Event, Thread
 from typing import Any, Final
 
+from sonolube.errors import SonolubeError
 from sonolube.laboratory.block import Block
-from sonolube.laboratory.devices import Acquisition, DeviceError, Devices, DriveSetting, DriveSource, Motor
+from sonolube.laboratory.devices import Acquisition, DeviceError, Devices, DriveSetting, DriveSource, Motor, fault_of
 from sonolube.text.units import format_si
 
 LATE: Final = 2.0
@@ -27,6 +28,7 @@ CLOCK_ERROR: Final = 2e-4
 
 _LOOK: Final = 0.1  # s, between two looks at the clock
 _SWITCHING: Final = 10.0  # s, for a device that switches off, stops or closes
+_RETURNING: Final = 10.0  # s, for a setting that was late, before the outputs count as not under control
 _CONNECTING: Final = 60.0  # s
 _PACE: Final = 0.05  # s, time of a block before the first one was read
 
@@ -39,21 +41,29 @@ class Late(DeviceError):
 class _Call:
     """A call to a device, and its answers: a value and None, or an error."""
 
+    what: str
     function: Callable[[], Any]
+    may_switch_on: bool = False
     answers: "SimpleQueue[tuple[Any, BaseException | None]]" = field(default_factory=SimpleQueue)
+    has_returned: Event = field(default_factory=Event)
 
     def make(self) -> None:
         """Make the call and keep its answer."""
+        answer: tuple[Any, BaseException | None]
         try:
-            self.answers.put((self.function(), None))
+            answer = self.function(), None
         except BaseException as failure:  # whatever a driver raises belongs to who has asked
-            self.answers.put((None, failure))
+            answer = None, failure
+        self.has_returned.set()
+        self.answers.put(answer)
 
     def answer(self) -> Any:
-        """Answer of the call; raises what it has raised."""
+        """Answer of the call; raises what it has raised, as a DeviceError where it is of no kind of sonolube's."""
         value, failure = self.answers.get()
-        if failure is not None:
+        if isinstance(failure, SonolubeError):
             raise failure
+        if failure is not None:
+            raise DeviceError(fault_of(self.what, failure))
         return value
 
 
@@ -78,6 +88,8 @@ class Supervisor:
         self._changed = Condition()
         self._calls: SimpleQueue[_Call | None] = SimpleQueue()
         self._waiting: _Call | None = None
+        self._at_work: _Call | None = None
+        self._overdue: _Call | None = None
         self._deadline, self._expected = inf, ""
         self._on: set[object] = set()
         self._has_ended = False
@@ -102,9 +114,11 @@ class Supervisor:
         """Time of the clock. [s]"""
         return time.monotonic() if self._hardware.clock is None else self._hardware.clock()
 
-    def call(self, what: str, function: Callable[[], Any], *, limit: float, otherwise: str = "") -> Any:
+    def call(
+        self, what: str, function: Callable[[], Any], *, limit: float, otherwise: str = "", may_switch_on: bool = False
+    ) -> Any:
         """Answer of a call to a device."""
-        call = _Call(function)
+        call = _Call(what, function, may_switch_on)
         missed = otherwise or f"{what} did not return within {format_si(limit, 's', digits=3)}"
         with self._changed:
             if self.reason:
@@ -138,7 +152,8 @@ class Supervisor:
     def turns_on(self, output: object) -> None:
         """Record that a device is on, and enable the outputs by the guard."""
         if self._guard is not None and not self._on:
-            self.call(f"{self._guard.name}: enable", self._guard.enable, limit=self.pace + LATE)
+            enable = f"{self._guard.name}: enable"
+            self.call(enable, self._guard.enable, limit=self.pace + LATE, may_switch_on=True)
         self._on.add(output)
 
     def is_off(self, output: object) -> None:
@@ -179,6 +194,17 @@ class Supervisor:
         calls = [(f"{each.name}: off", getattr(each, "halt", each.off)) for each in outputs]
         return _all_within(_SWITCHING, [*first, *calls])
 
+    def settle(self) -> list[str]:
+        """After a call that was late: wait for it, switch off anew, and return what failed or may still switch on."""
+        if self._overdue is None:
+            return []
+        if self._overdue.has_returned.wait(_RETURNING):
+            self._not_off = self.halt()
+            return self._not_off
+        if self._guard is not None and not self._overdue.what.startswith(self._guard.name) and not self._not_off:
+            return []  # hardware holds the outputs off, whatever is set
+        return [f"{self._overdue.what} has not returned, and may switch on when it does"]
+
     def _expect(self, within: float, otherwise: str) -> float:
         """Expect a sign of life within a time, and return when that ends; the lock is held."""
         self._deadline, self._expected = self.now() + within, otherwise
@@ -187,6 +213,10 @@ class Supervisor:
     def _make_calls(self) -> None:
         """Thread of the devices: make calls in the order in which they were asked for."""
         while (call := self._calls.get()) is not None:
+            if self.reason:
+                call.answers.put((None, Late(self.reason)))
+                continue
+            self._at_work = call
             call.make()
 
     def _watch(self) -> None:
@@ -205,7 +235,10 @@ class Supervisor:
         with self._changed:
             if self.reason or self._has_ended:
                 return
-            self.reason = f"{missed}; the supervisor has switched motor and drive off"
+            self.reason = f"{missed}; the supervisor has told motor and drive to switch off"
+            call = self._at_work
+            if call is not None and call.may_switch_on and not call.has_returned.is_set():
+                self._overdue = call
         self._not_off = self.halt()
         with self._changed:
             if self._waiting is not None:
@@ -288,7 +321,8 @@ class _SupervisedOutput(_Supervised):
     def _set(self, what: str, function: Callable[[], None]) -> None:
         """Set the output."""
         self._supervisor.turns_on(self)
-        self._supervisor.call(f"{self.name}: {what}", function, limit=self._supervisor.pace + LATE)
+        latest = self._supervisor.pace + LATE
+        self._supervisor.call(f"{self.name}: {what}", function, limit=latest, may_switch_on=True)
 
 
 class _SupervisedDrive(_SupervisedOutput):
@@ -319,18 +353,18 @@ class _SupervisedMotor(_SupervisedOutput):
 
 def _all_within(limit: float, calls: Sequence[tuple[str, Callable[[], Any]]]) -> list[str]:
     """Make calls at the same time, each in a thread of its own, and return those that failed or did not return."""
-    made = [(what, _Call(function)) for what, function in calls]
-    threads = [Thread(target=call.make, daemon=True, name="sonolube off") for _, call in made]
+    made = [_Call(what, function) for what, function in calls]
+    threads = [Thread(target=call.make, daemon=True, name="sonolube off") for call in made]
     for thread in threads:
         thread.start()
     latest = time.monotonic() + limit
     failures = []
-    for thread, (what, call) in zip(threads, made, strict=True):
+    for thread, call in zip(threads, made, strict=True):
         thread.join(max(latest - time.monotonic(), 0.0))
         if thread.is_alive():
-            failures.append(f"{what} did not return within {format_si(limit, 's')}")
+            failures.append(f"{call.what} did not return within {format_si(limit, 's')}")
             continue
         failure = call.answers.get()[1]
         if failure is not None:
-            failures.append(f"{what}: {failure}")
+            failures.append(fault_of(call.what, failure))
     return failures

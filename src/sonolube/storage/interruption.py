@@ -2,7 +2,7 @@
 
 import os
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from threading import Event
 from types import FrameType
@@ -13,6 +13,14 @@ _MEANINGS: Final = {  # Windows has no SIGHUP, and alone SIGBREAK
     "SIGTERM": "terminated",
     "SIGHUP": "ended with its terminal",
     "SIGBREAK": "interrupted by Ctrl-Break",
+}
+_OTHERS: Final = {  # that would end or stop the process too; SIGKILL and SIGSTOP cannot be heard
+    "SIGQUIT": "ended by Ctrl-\\",
+    "SIGTSTP": "suspended by Ctrl-Z",
+    **{
+        f"SIG{name}": f"ended by SIG{name}"
+        for name in ("USR1", "USR2", "ALRM", "VTALRM", "XCPU", "PWR", "TTIN", "TTOU")
+    },
 }
 _ORDERLY_END: Final = 2.0  # s, of the five that Windows leaves when it closes a console
 _SHOW_CURSOR = b"\r\x1b[K\x1b[?25h"  # a progress bar has hidden it
@@ -31,26 +39,32 @@ def undone_at_signal(undo: Callable[[], object]) -> Iterator[None]:
 
 
 @contextmanager
-def asked_by_signal(ask: Callable[[str], object]) -> Iterator[None]:
-    """Turn the first signal inside a `with` block into a request for an orderly end; a second acts as outside.
+def asked_by_signal(ask: Callable[[str], object], *, is_final: bool = False) -> Iterator[None]:
+    """Turn signals inside a `with` block into a request for an orderly end.
 
-    The signals are SIGINT, SIGTERM, SIGHUP and, on Windows, SIGBREAK. Those that are ignored stay ignored; outside the
-    main thread of a process they change nothing. Where Windows closes the console, the block has two seconds to end;
-    then what was begun is undone, and the process ends.
+    After the first SIGINT, SIGTERM, SIGHUP and, on Windows, SIGBREAK, a second of them acts as outside, unless the
+    block is the end of the program. Others that would end or stop the process, such as that of Ctrl-Z, are a request
+    each time they come; SIGKILL, SIGSTOP and those of a broken process cannot be heard. Those that are ignored or
+    handled stay so; outside the main thread of a process they change nothing. Where Windows closes the
+    console, the block has two seconds to end; then what was begun is undone, and the process ends.
     """
     former: dict[int, signal._HANDLER] = {}
+    usual = _heard_signals()
 
-    def first(number: int, frame: FrameType | None) -> None:
-        restore()
-        ask(_MEANINGS[signal.Signals(number).name])
+    def request(number: int, frame: FrameType | None) -> None:
+        if not is_final:
+            restore(usual)
+        ask((_MEANINGS | _OTHERS)[signal.Signals(number).name])
 
-    def restore() -> None:
-        while former:
-            signal.signal(*former.popitem())
+    def restore(numbers: Iterable[int]) -> None:
+        for number in numbers:
+            if number in former:
+                signal.signal(number, former.pop(number))
 
-    for number in _heard_signals():
-        with suppress(ValueError):
-            former[number] = signal.signal(number, first)
+    others = [getattr(signal, name) for name in _OTHERS if hasattr(signal, name)]
+    for number in (*usual, *(each for each in others if signal.getsignal(each) is signal.SIG_DFL)):
+        with suppress(ValueError, OSError):
+            former[number] = signal.signal(number, request)
     ended = Event()
 
     def close(meaning: str) -> None:
@@ -66,7 +80,7 @@ def asked_by_signal(ask: Callable[[str], object]) -> Iterator[None]:
     finally:
         ended.set()
         forget()
-        restore()
+        restore(list(former))
 
 
 def end_program_at_signals() -> None:

@@ -106,8 +106,13 @@ class Answer(ABC):
 
     @property
     def is_failure(self) -> bool:
-        """Whether a result says that something failed or is missing; a program then ends with exit code 1."""
+        """Whether a result says that something failed or is missing."""
         return False
+
+    @property
+    def exit_code(self) -> int:
+        """Exit code of a program that has shown it: 1 where something failed."""
+        return int(self.is_failure)
 
     def every_caveat(self) -> list[str]:
         """Caveats, those first that stand above the result."""

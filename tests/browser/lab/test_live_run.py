@@ -62,7 +62,8 @@ def test_a_slice_has_its_middle_and_the_extremes_and_mean_of_each_channel() -> N
 
 def test_a_run_that_has_not_begun_is_preparing_and_says_what_it_is_of() -> None:
     assert LiveRun({"title": "Own"}, RunControl()).status() == {
-        "title": "Own", "state": "preparing", "outcome": "", "reason": "", "folder": "", "step": "", "kind": "",
+        "title": "Own", "state": "preparing", "outcome": "", "reason": "", "outputs": "",
+        "folder": "", "step": "", "kind": "",
         "doing": "", "time": 0.0, "prompt": None, "trips": [], "is_paused": False, "is_stopping": False,
         "is_ended": False, "is_lost": False,
     }  # fmt: skip

@@ -34,8 +34,14 @@ BUTTON = '<form method="post" action="stop">'
     [
         ({}, "A run is at work", True, False),
         ({"is_stopping": True}, "Stopping: motor and drive are being switched off", True, False),
-        ({"is_ended": True, "state": "safe"}, "The run has ended: motor and drive are off", False, False),
-        ({"is_ended": True, "state": "failed"}, "Cut the power: motor or drive may be on", False, True),
+        ({"is_ended": True, "state": "safe"}, "The run has ended; motor and drive: off", False, False),
+        (
+            {"is_ended": True, "state": "safe", "outputs": "measured off"},
+            "The run has ended; motor and drive: measured off",
+            False,
+            False,
+        ),
+        ({"is_ended": True, "state": "failed"}, "motor and drive: cut the power: they may be on", False, True),
         ({"state": "failed"}, "A run is at work", True, True),
     ],
 )

@@ -78,7 +78,7 @@ def test_a_limit_ends_the_hold_with_everything_off_and_exit_code_1(
     run = sonolube("lab", "hold", rigs / "tribometer.toml", *options)
     assert run.code == 1
     assert "outcome          stopped: channel friction_force is 5" in run.out
-    assert "motor and drive  off" in run.out
+    assert "motor and drive  confirmed off" in run.out
     assert "held-friction" not in run.out  # the controller never took over
 
 

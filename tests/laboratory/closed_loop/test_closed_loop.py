@@ -241,9 +241,12 @@ def test_whatever_call_fails_everything_is_off_and_what_was_measured_is_kept(cal
 
 
 def test_an_interrupt_passes_through_with_everything_off() -> None:
-    rig = LaggedRig(straight, 5e-3, fault=Fault(call=30, error=KeyboardInterrupt(), stays_dead=False))
+    def interrupt(stage: str, done: int, total: int) -> None:
+        raise KeyboardInterrupt
+
+    rig = LaggedRig(straight, 5e-3)
     with pytest.raises(KeyboardInterrupt):
-        hold_friction(hold(controller()), rig.devices())
+        hold_friction(hold(controller()), rig.devices(), advance=interrupt)
     assert rig.is_off
 
 

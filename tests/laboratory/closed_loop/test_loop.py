@@ -15,7 +15,7 @@ from sonolube.checks import Floats
 from sonolube.design.control import FrictionCharacteristic, FrictionController, Process, tuned_controller
 from sonolube.errors import InvalidInput
 from sonolube.facts.protocol import Limits
-from sonolube.laboratory import DriveSetting
+from sonolube.laboratory import DriveSetting, Outputs, Verdict
 from sonolube.laboratory.closed_loop import (
     FrictionHold,
     HeldFriction,
@@ -164,7 +164,7 @@ def held(forces: list[float], volts: list[float], speeds: list[float], **changes
         "intrinsic_friction_force": 1.3,
         "outcome": "stopped",
         "reason": "enough",
-        "is_safe": True,
+        "verdict": Verdict(Outputs.MEASURED_OFF),
     }
     return HeldFriction(**(known | changes))
 

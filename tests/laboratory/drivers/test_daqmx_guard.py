@@ -134,10 +134,11 @@ def test_a_call_of_the_driver_that_hangs_leaves_outputs_at_0_volt_and_the_line_l
 
     monkeypatch.setattr(supervision, "time", clock)
     monkeypatch.setattr(supervision, "LATE", 2.0)
+    monkeypatch.setattr(supervision, "_RETURNING", 0.2)
     card.hangs = hang
     result = run_protocol(PROTOCOL, devices(tmp_path), MemoryRecord(), operator=lambda _: True)
     assert (result.state, result.outcome) == (State.SAFE, "failed")
-    assert result.reason.endswith("; the supervisor has switched motor and drive off")
+    assert result.reason.endswith("; the supervisor has told motor and drive to switch off")
     assert card.is_off("Dev1/ao0")
     assert card.is_off("Dev1/ao1")
     assert not card.lines[LINE]

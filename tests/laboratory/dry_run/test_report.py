@@ -10,6 +10,7 @@ from tests.same import approx
 from sonolube.charts import Axis, Line, Rule, Zone
 from sonolube.design.control import Amplifier
 from sonolube.facts.protocol import Protocol, SetPoint, protocol_from
+from sonolube.facts.protocol.step import Lane
 from sonolube.laboratory.dry_run.record import DriveLoad, DryRun, Heating, PlannedPoint
 from sonolube.laboratory.dry_run.report import (
     SAFETY,
@@ -37,7 +38,7 @@ def load(current: float, *, slew: float = 1e6, power: float = 1.0) -> DriveLoad:
 def point(time: float, step: str, kind: str = "wait", *, lasts: float = 1.0, **more: Any) -> PlannedPoint:
     planned = {"content", "sliding_speed", "vibration_amplitude", "friction_force", "load"}
     set_points = {k: v for k, v in more.items() if k not in planned}
-    begins = ("record",) if kind == "acquire" else ()
+    begins: tuple[Lane, ...] = ("record",) if kind == "acquire" else ()
     setting = SetPoint(time=time, step=step, kind=kind, sets=begins, **set_points)
     return PlannedPoint(setting=setting, duration=lasts, **{k: v for k, v in more.items() if k in planned})
 

@@ -224,7 +224,7 @@ def test_the_supervisor_ends_a_virtual_run_that_is_late_or_hangs_with_its_output
     devices = with_fault(virtual.devices, 2000, kind)
     result = run_protocol(protocol_by_name_or_file("map_test"), devices, MemoryRecord(), operator=lambda prompt: True)
     assert (result.outcome, result.state) == ("failed", State.SAFE)
-    assert "virtual acquisition: a block is late by more than 2 s; the supervisor has switched" in result.reason
+    assert "virtual acquisition: a block is late by more than 2 s; the supervisor has told" in result.reason
     truth = virtual.truth()
     assert (float(truth["sliding_speed"][-1]), float(truth["voltage_peak_to_peak"][-1])) == (0.0, 0.0)
 

@@ -12,7 +12,7 @@ import xarray as xr
 from pytest import approx
 
 from sonolube.facts.protocol import protocol_by_name_or_file, protocol_names
-from sonolube.laboratory import State
+from sonolube.laboratory import Outputs, RunState, State, Verdict
 from sonolube.laboratory.dry_run import dry_run
 from sonolube.laboratory.records import Observation
 from sonolube.report.blocks import Rows, Table, Verbatim
@@ -96,13 +96,13 @@ def test_the_next_command_is_for_the_channels_that_were_recorded(
 
 
 def test_a_run_in_words_has_outcome_state_of_the_outputs_record_and_next_command() -> None:
-    state: Any = SimpleNamespace(state=State.SAFE)
+    state = RunState(State.SAFE, verdict=Verdict(Outputs.CONFIRMED_OFF, "by its own word"))
     title, rows, after = results.run_blocks(state, run({ONE: ("friction_force",)}), simulated=True)
     assert title == "Brass on steel (virtual)"
     assert isinstance(rows, Rows)
     assert list(rows.rows) == [
         ("outcome", "completed"),
-        ("motor and drive", "off"),
+        ("motor and drive", "confirmed off, by its own word"),
         ("recorded", "12.5 s, 4 samples of each channel"),
         ("channels", "friction_force [N], voltage [V]"),
         ("mean friction", "4 N"),
@@ -113,12 +113,13 @@ def test_a_run_in_words_has_outcome_state_of_the_outputs_record_and_next_command
 
 def test_a_run_that_failed_says_why_and_to_cut_the_power_and_has_no_next_command() -> None:
     failed = run({}, reason="limit of friction")
-    title, rows = results.run_blocks(SimpleNamespace(state=State.FAILED), failed, simulated=False)  # type: ignore[arg-type]
+    state = RunState(State.FAILED, verdict=Verdict(Outputs.CUT_THE_POWER, "drive hangs"))
+    title, rows = results.run_blocks(state, failed, simulated=False)
     assert title == "Brass on steel"
     assert isinstance(rows, Rows)
     known = dict(rows.rows)
     assert known["outcome"] == "stopped: limit of friction"
-    assert known["motor and drive"] == "NOT confirmed off: cut the power"
+    assert known["motor and drive"] == "cut the power: drive hangs"
     assert "mean friction" not in known
 
 
@@ -130,7 +131,7 @@ def test_the_mean_friction_is_of_recordings_of_up_to_ten_million_samples(
     channel: str, samples: int, mean: float | None
 ) -> None:
     found = results.run_object(
-        SimpleNamespace(state=State.SAFE),  # type: ignore[arg-type]
+        RunState(State.SAFE, verdict=Verdict(Outputs.MEASURED_OFF)),
         run({ONE: (channel,)}, samples=samples, facts={"tags": "a, b"}),
         simulated=False,
     )
@@ -139,6 +140,7 @@ def test_the_mean_friction_is_of_recordings_of_up_to_ten_million_samples(
         "outcome": "completed",
         "reason": "",
         "state": "safe",
+        "outputs": "measured off",
         "simulated": False,
         "folder": str(FOLDER),
         "recordings": [str(ONE)],

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from pytest import MonkeyPatch, approx
 
+from sonolube.laboratory import Outputs, Verdict
 from sonolube.report.blocks import Rows
 from sonolube.report.results import held_friction as results
 
@@ -36,13 +37,14 @@ DESIGN: Any = SimpleNamespace(
     ),
     margins=SimpleNamespace(gain_margin=3.5, phase_margin=pi / 3, delay_margin=1.5e-3, sensitivity_peak=1.59),
 )
+MEASURED, ON = Verdict(Outputs.MEASURED_OFF), Verdict(Outputs.CUT_THE_POWER, "drive hangs")
 RIG: Any = SimpleNamespace(title="Own rig")
 RUN: Any = SimpleNamespace(folder=Path("runs", "7"), recordings=(Path("runs", "7", "a.nc"),), facts={"tags": "hold"})
 
 
-def held(*, intrinsic: float = 1.5, is_safe: bool = True, reason: str = "", samples: int = 5) -> Any:
+def held(*, intrinsic: float = 1.5, verdict: Verdict = MEASURED, reason: str = "", samples: int = 5) -> Any:
     return SimpleNamespace(
-        outcome="completed", reason=reason, is_safe=is_safe, time=np.zeros(samples),
+        outcome="completed", reason=reason, verdict=verdict, is_safe=verdict.is_off, time=np.zeros(samples),
         hold=SimpleNamespace(friction_force=0.5), intrinsic_friction_force=intrinsic,
     )  # fmt: skip
 
@@ -59,7 +61,7 @@ def test_held_friction_is_said_at_each_speed_beside_reference_and_margins() -> N
     assert isinstance(rows, Rows)
     assert list(rows.rows) == [
         ("outcome", "completed"),
-        ("motor and drive", "off"),
+        ("motor and drive", "measured off"),
         ("reference", "500 mN; 1.5 N without vibration, before"),
         ("controller", "interval 10 ms, K_c 0.432, tau_I 25 ms (SIMC)"),
         ("margins told", "gain 3.50, phase 60.0 deg, delay 1.5 ms, Ms 1.59"),
@@ -68,12 +70,12 @@ def test_held_friction_is_said_at_each_speed_beside_reference_and_margins() -> N
         ("record", str(RUN.folder)),
     ]
     title, rows = results.held_blocks(
-        RIG, held(intrinsic=NAN, is_safe=False, reason="hot", samples=0), DESIGN, RUN, simulated=False
+        RIG, held(intrinsic=NAN, verdict=ON, reason="hot", samples=0), DESIGN, RUN, simulated=False
     )
     assert title == "Own rig, friction held"
     assert isinstance(rows, Rows)
     assert list(rows.rows)[:3] == [
-        ("outcome", "completed: hot"), ("motor and drive", "NOT confirmed off: cut the power"), ("reference", "500 mN"),
+        ("outcome", "completed: hot"), ("motor and drive", "cut the power: drive hangs"), ("reference", "500 mN"),
     ]  # fmt: skip
     assert not any(name.startswith("at ") for name, _ in rows.rows)
 

@@ -53,7 +53,7 @@ class LiveRun:
         self._extremes: dict[str, float] = {}
         self._rests: dict[str, float] = {}
         self._point: SetPoint | None = None
-        self._state, self._outcome, self._reason, self._doing = "preparing", "", "", ""
+        self._state, self._outcome, self._reason, self._doing, self._outputs = "preparing", "", "", "", ""
         self._time, self._trips = 0.0, list[str]()
         self._prompt: Prompt | None = None
         self._asked = 0  # prompts until now, which number them: two may have the same text
@@ -93,6 +93,7 @@ class LiveRun:
             self._reason = str(facts.get("reason", "")) if self._state != "running" else ""
             if self._state != "running":
                 self._doing = self._reason
+        self._outputs = str(facts.get("outputs", self._outputs))
         if kind == "trip":
             self._trips = [*self._trips, str(facts.get("reason", ""))][-_TRIPS:]
 
@@ -137,6 +138,7 @@ class LiveRun:
             "state": self._state,
             "outcome": self._outcome,
             "reason": self._reason,
+            "outputs": self._outputs,
             "folder": self._folder.name,
             "step": "" if point is None else point.step,
             "kind": "" if point is None else point.kind,

@@ -327,7 +327,7 @@ def _holder(content: Mapping[str, Any]) -> str:
 
 def _bare(record: RunnerRecord) -> dict[str, Any]:
     """State of a run of which nothing but its request is known."""
-    nothing = dict.fromkeys(("outcome", "reason", "step", "kind", "doing"), "")
+    nothing = dict.fromkeys(("outcome", "reason", "outputs", "step", "kind", "doing"), "")
     return {
         **record.about,
         **nothing,

@@ -20,7 +20,7 @@ from sonolube.errors import SonolubeError, fault_line
 from sonolube.laboratory import RunControl
 from sonolube.operating_system import process_start
 from sonolube.storage.files import locked_folder
-from sonolube.storage.interruption import end_program_at_signals, undone_at_signal
+from sonolube.storage.interruption import asked_by_signal, end_program_at_signals, undone_at_signal
 
 _AT_WORK: Final = "at-work"
 
@@ -60,6 +60,7 @@ def main(folder: Path) -> None:
     try:
         with ExitStack() as stack:
             stack.enter_context(undone_at_signal(lambda: _note_early_end(live, folder)))
+            stack.enter_context(asked_by_signal(control.stop, is_final=True))
             stack.enter_context(locked_folder(folder.parent / _AT_WORK, purpose="run of the laboratory"))
             ended = _followed(request, live, control)
     except SonolubeError as failure:

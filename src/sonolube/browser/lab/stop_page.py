@@ -190,7 +190,8 @@ def stop_page(status: dict[str, Any]) -> str:
     template = files("sonolube.browser").joinpath("static/stop.html").read_text(encoding="utf-8")
     is_ended, is_safe = status["is_ended"], status["state"] != "failed"
     if is_ended:
-        head = "The run has ended: motor and drive are off" if is_safe else "Cut the power: motor or drive may be on"
+        outputs = status.get("outputs") or ("off" if is_safe else "cut the power: they may be on")
+        head = f"The run has ended; motor and drive: {outputs}"
     else:
         head = "Stopping: motor and drive are being switched off" if status["is_stopping"] else "A run is at work"
     facts = {

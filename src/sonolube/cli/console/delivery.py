@@ -51,8 +51,8 @@ def deliver(
         typer.echo(printable(f"{command}: {reason}"), err=True)
     if answer.refusals():
         raise typer.Exit(_FAILED if answer.has_result else _ALL_REFUSED)
-    if answer.is_failure:
-        raise typer.Exit(_FAILED)
+    if answer.exit_code:
+        raise typer.Exit(answer.exit_code)
 
 
 def line_width() -> int:

@@ -14,7 +14,7 @@ from sonolube.laboratory.closed_loop.plan import FrictionHold, HeldFriction, rec
 from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting, Recorder
 from sonolube.laboratory.interlocks import interlocks_for, set_point_trip
 from sonolube.laboratory.own_clocks import OwnClocks
-from sonolube.laboratory.states import Event, RunControl, RunEnded, State
+from sonolube.laboratory.states import Event, RunControl, RunEnded
 from sonolube.laboratory.supervised_run import Advance, Sampling, SupervisedRun
 from sonolube.rig import dataset
 from sonolube.storage.interruption import asked_by_signal, undone_at_signal
@@ -76,7 +76,7 @@ class _Loop(SupervisedRun):
 
     def __init__(self, hold: FrictionHold, devices: Devices, recorder: Recorder | None, control: RunControl) -> None:
         super().__init__(devices, recorder, control)
-        self._hold = hold
+        self._hold, self._limits, self._frequency = hold, hold.limits, hold.frequency
         channels = devices.acquisition.channels
         locks = interlocks_for(hold.limits, devices.channels, hold.drive_sampling)
         self._clocks = OwnClocks(devices, locks)
@@ -177,7 +177,7 @@ class _Loop(SupervisedRun):
             intrinsic_friction_force=float(np.mean(run_in)) if run_in else nan,
             outcome=self._present.outcome,
             reason=self._present.reason,
-            is_safe=self._present.state is State.SAFE,
+            verdict=self._present.verdict,
         )
 
 

@@ -12,6 +12,7 @@ from sonolube.errors import InvalidInput
 from sonolube.facts.protocol import Limits, Protocol, exact_text, protocol_from
 from sonolube.laboratory.block import Channel
 from sonolube.laboratory.interlocks import DriveSampling, interlocks_for
+from sonolube.laboratory.verdict import Verdict
 from sonolube.models.actuator.drive import Drive
 from sonolube.text.units import format_si
 
@@ -151,8 +152,8 @@ class HeldFriction:
         completed, stopped or failed.
     reason : str
         Why it ended before its time.
-    is_safe : bool
-        Whether drive and motor have confirmed that they are off.
+    verdict : Verdict or None
+        On motor and drive after the end; None where the loop connected no device.
     """
 
     hold: FrictionHold
@@ -165,7 +166,12 @@ class HeldFriction:
     intrinsic_friction_force: float
     outcome: str
     reason: str
-    is_safe: bool
+    verdict: Verdict | None
+
+    @property
+    def is_safe(self) -> bool:
+        """Whether drive and motor are off, as far as the verdict knows."""
+        return self.verdict is None or self.verdict.is_off
 
 
 _RECORDED: Final = ("friction_force", "normal_load", "voltage_peak_to_peak", "voltage", "temperature", "gaussmeter")

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from sonolube.facts.protocol import Protocol
-from sonolube.laboratory import RunState, State
+from sonolube.laboratory import RunState, verdict_text
 from sonolube.laboratory.dry_run import DryRun, dry_run_cells, dry_run_lines, dry_run_sums
 from sonolube.laboratory.records import Observation, Run
 from sonolube.operating_system import quoted
@@ -67,7 +67,7 @@ def run_blocks(result: RunState, run: Run, *, simulated: bool) -> list[Block]:
     mean = _mean_friction(run)
     rows = [
         ("outcome", summary.outcome + (f": {summary.reason}" if summary.reason else "")),
-        ("motor and drive", off_text(is_off=result.state is State.SAFE)),
+        ("motor and drive", verdict_text(result.verdict)),
         ("recorded", f"{format_si(summary.duration, 's')}, {summary.samples} samples of each channel"),
         ("channels", ", ".join(each.described for each in run.channels.values())),
         *(() if mean is None else (("mean friction", format_si(mean, "N", digits=3)),)),
@@ -83,6 +83,7 @@ def run_object(result: RunState, run: Run, *, simulated: bool) -> dict[str, Any]
     return {
         **picked(summary, "title", "outcome", "reason"),
         "state": result.state.value,
+        "outputs": verdict_text(result.verdict),
         "simulated": simulated,
         "folder": str(summary.folder),
         "recordings": [str(path) for path in run.recordings],
@@ -132,11 +133,6 @@ def dry_run_object(protocol: Protocol, found: DryRun) -> dict[str, Any]:
         **si({"duration": found.duration}, unit="s"),
         "lines": dry_run_lines(found),
     }
-
-
-def off_text(*, is_off: bool) -> str:
-    """Whether motor and drive are off, in words."""
-    return "off" if is_off else "NOT confirmed off: cut the power"
 
 
 _QUIET: Final = 5.0  # s without a block or event that are reported

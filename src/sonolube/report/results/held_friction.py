@@ -5,10 +5,10 @@ from math import degrees
 from typing import Any, Final
 
 from sonolube.design.control import ControlDesign
+from sonolube.laboratory import verdict_text
 from sonolube.laboratory.closed_loop import HeldFriction, HoldMetrics, hold_metrics
 from sonolube.laboratory.records import Run
 from sonolube.report.blocks import Block, Rows
-from sonolube.report.results.ended_run import off_text
 from sonolube.report.results.record_object import picked
 from sonolube.rig import Rig
 from sonolube.text.units import format_si
@@ -22,7 +22,7 @@ def held_blocks(rig: Rig, held: HeldFriction, design: ControlDesign, run: Run, *
     """Reference, margins by the design, friction held at each speed, and the record."""
     rows = [
         ("outcome", held.outcome + (f": {held.reason}" if held.reason else "")),
-        ("motor and drive", off_text(is_off=held.is_safe)),
+        ("motor and drive", verdict_text(held.verdict)),
         ("reference", _reference_text(held)),
         ("controller", _controller_text(design)),
         ("margins told", _margins_text(design)),
@@ -38,6 +38,7 @@ def held_object(rig: Rig, held: HeldFriction, design: ControlDesign, run: Run, *
         "rig": rig.title,
         **picked(held, "outcome", "reason"),
         "safe": held.is_safe,
+        "outputs": verdict_text(held.verdict),
         "simulated": simulated,
         "folder": str(run.folder),
         "tags": run.facts.get("tags", ""),

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Unpack
 
 from sonolube.design.control import Amplifier, ControlDesign, ControlSettings, design_control
 from sonolube.errors import InvalidInput
-from sonolube.laboratory import RunControl, closed_loop, closed_loop as holds
+from sonolube.laboratory import RunControl, closed_loop, closed_loop as holds, exit_code
 from sonolube.laboratory.drivers.device_map import ready_devices
 from sonolube.laboratory.records import Run, read_run
 from sonolube.laboratory.run_plan import RunPlan, begin_record, require_free
@@ -93,6 +93,11 @@ class HoldAnswer(Answer):
     def is_failure(self) -> bool:
         """Whether the loop ended before its time."""
         return self.held.outcome != "completed"
+
+    @property
+    def exit_code(self) -> int:
+        """Exit code, one of its own where motor or drive may be on."""
+        return exit_code(self.held.verdict, is_failure=self.is_failure)
 
 
 @task

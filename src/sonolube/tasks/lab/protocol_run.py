@@ -12,7 +12,7 @@ from typing import Annotated, Any, Final, Literal, Unpack
 import sonolube.laboratory.dry_run as dry_runs
 from sonolube.errors import InvalidInput
 from sonolube.facts.protocol import Protocol, flattened, protocol_at, protocol_by_name_or_file
-from sonolube.laboratory import RunControl, RunState, RunWatcher, require_possible, run_protocol
+from sonolube.laboratory import RunControl, RunState, RunWatcher, exit_code, require_possible, run_protocol
 from sonolube.laboratory.devices import Devices
 from sonolube.laboratory.drivers.device_map import ready_devices
 from sonolube.laboratory.dry_run import DryRun, dry_run_chart
@@ -84,6 +84,11 @@ class RunAnswer(Answer):
     def is_failure(self) -> bool:
         """Whether the run ended before its protocol."""
         return self.run.summary.outcome != "completed"
+
+    @property
+    def exit_code(self) -> int:
+        """Exit code, one of its own where motor or drive may be on."""
+        return exit_code(self.result.verdict, is_failure=self.is_failure)
 
 
 @answer

@@ -18,9 +18,9 @@ const HOLDER =
 
 /**
  * @typedef {{id: string, state: string, outcome?: string, title?: string, protocol: string, step?: string, steps?:
- *   number, doing?: string, total?: number, time?: number, is_paused?: boolean, reason?: string, trips?: string[],
- *   prompt?: {number: number, task: string, text: string}|null, is_virtual?: boolean, rig?: string, seed?: number,
- *   folder?: string, stop_link?: string}} Run
+ *   number, doing?: string, total?: number, time?: number, is_paused?: boolean, reason?: string, outputs?: string,
+ *   trips?: string[], prompt?: {number: number, task: string, text: string}|null, is_virtual?: boolean, rig?: string,
+ *   seed?: number, folder?: string, stop_link?: string}} Run
  * @typedef {{name: string, label: string, unit: string}} Channel
  * @typedef {{kind: string, title: string, channels: Channel[]}} Devices
  * @typedef {{holder: {is_me: boolean, is_free: boolean}, run: Run|null, devices: Devices, lost: {text: string}|null,

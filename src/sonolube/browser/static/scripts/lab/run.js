@@ -36,7 +36,7 @@ const SIGNS = {
 };
 /** @type {Record<string, string>} */
 const OFF = {
-  failed: 'Cut the power: motor or drive did not confirm that it is off.',
+  failed: 'Cut the power: motor or drive may be on.',
   lost: 'Cut the power: the program of this run is gone, and nobody knows whether motor and drive are off.',
 };
 
@@ -229,6 +229,7 @@ export function RunCard({run, devices, isHolder, ask}) {
         html`<${Button} kind="button is-main" onClick=${() => ask('resume')} data-test="resume">Resume<//>`
       }
     </p>
+    ${now.outcome && now.outputs && html`<p data-test="run-outputs">Motor and drive: ${now.outputs}</p>`}
     ${now.outcome && now.reason && html`<p data-test="run-reason">Ended: ${now.reason}</p>`}
     ${trips.length > 0 && html`<${Warning}>${trips.map((trip) => html`<p key=${trip}>${trip}</p>`)}<//>`}
     ${now.prompt && isAtWork(now) && html`<${Prompt} prompt=${now.prompt} confirm=${isHolder && confirm} />`}
