@@ -117,7 +117,11 @@ def test_the_histogram_counts_in_percent_and_marks_mean_and_quantiles() -> None:
     rules = [part for part in marks if isinstance(part, Rule)]
     assert [rule.value for rule in rules] == approx(np.nanquantile(samples, [0.05, 0.25, 0.5, 0.75, 0.95]))
     assert [rule.label for rule in rules] == ["", "", "quantile with 95 % interval", "", ""]
-    assert [part.text for part in marks if isinstance(part, Note)] == ["5 %", "25 %", "50 %", "75 %", "95 %"]
+    notes = [part for part in marks if isinstance(part, Note)]
+    assert [note.text for note in notes] == ["5 %", "25 %", "50 %", "75 %", "95 %"]
+    assert [note.x for note in notes] == approx([rule.value for rule in rules])
+    assert panel.y.highest is not None
+    assert all(bars.lengths.max() <= note.y <= panel.y.highest for note in notes)
     few = histogram_chart(drawn(np.linspace(0.2, 0.8, 32))).panels[0].parts[0]
     assert isinstance(few, Bars)
     assert few.lengths.size == 10

@@ -170,6 +170,14 @@ def test_losses_that_the_circuit_lacks_are_within_the_intervals_of_both_weights(
     assert interval.lower < 150 < interval.upper
 
 
+def test_the_residual_is_the_scatter_of_the_spectrum() -> None:
+    f = np.linspace(16e3, 32e3, 401)
+    one, other = np.random.default_rng(4).normal(scale=0.01, size=(2, f.size))
+    impedance = (1 + one + 1j * other) / circuit_admittance(ONE, frequency=f)
+    found = fit_circuit(ImpedanceSpectrum(frequency=f, impedance=impedance), branches=1)
+    assert found.residual_rms == approx(0.01 * 2**0.5, rel=0.1)  # of both parts together
+
+
 def test_the_curve_that_the_analyser_computed_is_one_branch_to_its_last_digit(rb5100: ImpedanceSpectrum) -> None:
     found = fit_circuit(read_impedance(RB5100, sweep="memory"))
     assert len(found.circuit.branches) == 1
