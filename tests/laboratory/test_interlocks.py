@@ -251,3 +251,19 @@ def test_the_sampling_of_a_protocol_is_that_with_the_fewest_samples_a_period() -
     assert DriveSampling(sample_rate=1.0, frequency=1.0) == DriveSampling(
         sample_rate=1.0, frequency=1.0, is_sine=True, frequency_maximum=0.0
     )
+
+
+def test_a_limit_of_the_voltage_holds_twice_for_a_peak_to_peak_monitor() -> None:
+    monitor = Channel(name="voltage_peak_to_peak", quantity="voltage_peak_to_peak", lowest=-1.0, highest=200.0)
+    (lock,) = interlocks_for(limits_of(), {monitor.name: monitor}, None)
+    assert lock.limit == pytest.approx(60.0)
+    eighty = Block(first_sample=0, sample_rate=1.0, values=np.array([[59.0], [80.0]]))
+    assert first_trip(eighty, [monitor.name], [lock]) == "channel voltage_peak_to_peak is 80 V; its limit is 60 V"
+
+
+@pytest.mark.parametrize("kind", [np.int8, np.int16, np.int32, np.int64])
+def test_the_lowest_integer_of_a_kind_trips(kind: type[np.signedinteger[Any]]) -> None:
+    lowest = np.array([[np.iinfo(kind).min]], dtype=kind)  # whose magnitude is itself in integers
+    block = Block(first_sample=0, sample_rate=1.0, values=lowest)
+    hot = Channel(name="temperature", quantity="temperature", lowest=-np.inf, highest=np.inf)
+    assert "its limit is 100 K" in first_trip(block, ["temperature"], [Interlock(hot, 100.0)])

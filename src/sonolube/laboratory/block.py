@@ -95,6 +95,10 @@ class Block:
     sample_rate: float
     values: NDArray[np.float64]
 
+    def __post_init__(self) -> None:
+        """Make values floating-point: the magnitude of the lowest integer of a kind is negative, within all limits."""
+        object.__setattr__(self, "values", np.asarray(self.values, dtype=np.float64))
+
     @property
     def samples(self) -> int:
         """Number of samples of each channel."""

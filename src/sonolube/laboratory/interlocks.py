@@ -119,14 +119,17 @@ def _sampled(points: Sequence[SetPoint]) -> Iterator[tuple[float, SetPoint]]:
 
 _WATCHED: Final[Mapping[str, Sequence[str]]] = {  # channels by the limit that they are held to
     "duration_maximum": (),  # which the time line is held to
-    "voltage_maximum": ("voltage",),
+    "voltage_maximum": ("voltage", "voltage_peak_to_peak"),
     "current_maximum": ("current", "current_peak", "current_rms"),
     "temperature_maximum": ("temperature",),
     "friction_force_maximum": ("friction_force",),
 }
 _SET_POINTS: Final = ("voltage_maximum", "duration_maximum")  # held to by set points where no channel measures them
 _ROUNDING: Final = 1 + 1e-9
-_PEAK_OVER_RMS: Final = 2**0.5  # of a sine
+_OF_LIMIT: Final = {
+    "current_rms": 0.5**0.5,
+    "voltage_peak_to_peak": 2.0,
+}  # rms of a sine, and peak to peak, over a peak
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,6 +164,7 @@ def interlocks_for(
     -------
     tuple of Interlock
         A limit of the current holds for `current` and `current_peak`; over the square root of two for `current_rms`.
+        That of the voltage, which is of a peak, holds for `voltage`, and twice it for `voltage_peak_to_peak`.
 
     Raises
     ------
@@ -174,7 +178,7 @@ def interlocks_for(
         limit, present = getattr(limits, name), _watching(channels, watched)
         if limit is None or (not present and name in _SET_POINTS):
             continue
-        locks = [Interlock(each, limit / _PEAK_OVER_RMS if each.name == "current_rms" else limit) for each in present]
+        locks = [Interlock(each, limit * _OF_LIMIT.get(each.name, 1.0)) for each in present]
         fault = _fault(name, watched[0], locks, drive)
         faults += [fault] if fault else []
         found += locks
