@@ -111,7 +111,8 @@ def in_use(page: Page) -> str:
 
 
 def reach(page: Page, test: str, *, back: bool = False) -> None:
-    """Go by the tab key to an element; the whole page has fewer stops than are tried."""
+    """Go by the tab key to an element once it is there; the whole page has fewer stops than are tried."""
+    expect(page.get_by_test_id(test).first).to_be_enabled()
     for _ in range(400):
         if in_use(page) == test:
             return

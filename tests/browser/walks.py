@@ -78,7 +78,8 @@ class Keyboard(Mouse):
     name = "keyboard"
 
     def reach(self, *tests: str) -> None:
-        """Go by the tab key to the first of some elements that it meets."""
+        """Go by the tab key to the first of some elements that it meets, once one is there and enabled."""
+        expect(self.page.locator(", ".join(f'[data-test="{each}"]' for each in tests)).first).to_be_enabled()
         for _ in range(MAX_STOPS):
             if in_use(self.page) in tests:
                 break
