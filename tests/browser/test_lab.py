@@ -263,7 +263,28 @@ def test_a_killed_run_is_told_and_its_record_recovered_before_the_next(lab: Aske
     assert record.summary.outcome == "interrupted"
     assert record.summary.samples > 0
     state = lab.state(HOLDER)
-    assert (state["lost"], state["run"]["state"], state["run"]["is_lost"]) == (None, "lost", True)
+    assert (state["lost"], state["run"]["state"], state["run"]["is_lost"]) == (None, "safe", False)
+    assert state["run"]["outputs"] == "the operator has cut the power and seen that motor and drive are off"
+
+
+def test_a_killed_run_of_a_map_is_switched_off_and_told_by_its_switch_off_process(
+    tmp_path: Path, packages: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(packages), os.environ.get("PYTHONPATH", "")]))
+    with laboratory(tmp_path, device_map=written(tmp_path, MAP)) as lab:
+        assert lab.post("/api/lab/hold", {"holder": HOLDER})[0] == 200
+        run = lab.start(PROTOCOL.replace('"0.3 s"', '"1.9 s"', 1))
+        log = packages / "log.txt"
+        until(lambda: log.exists() and "drive 20 V 22000 Hz" in log.read_text())
+        os.kill(run["process"], signal.SIGKILL)
+        ended = lab.run_when(lambda run: run["is_ended"])
+        assert lab.state(HOLDER)["lost"] is None
+    assert (ended["state"], ended["outcome"], ended["reason"]) == ("safe", "failed", "its program was killed")
+    assert ended["outputs"].startswith("confirmed off")
+    assert record_of(tmp_path, ended).summary.outcome == "interrupted"
+    lines = (packages / "log.txt").read_text().splitlines()
+    assert {"drive off", "motor off"} <= set(lines[lines.index("drive 20 V 22000 Hz") :])
 
 
 def test_devices_of_a_map_are_run_and_end_off(tmp_path: Path, packages: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -27,6 +27,8 @@ from nidaqmx.errors import DaqError
 from numpy.typing import NDArray
 from pytest import MonkeyPatch
 
+from sonolube.laboratory.drivers import read_device_map
+
 CLOCK = 100e6  # Hz, of which every sample rate is a whole part
 SAMPLE_CLOCK_RATE = 0x1344
 READ_POSITION = 0x1221
@@ -330,3 +332,5 @@ def install(device: DaqmxDevice, monkeypatch: MonkeyPatch) -> None:
     calls = {name: staticmethod(getattr(device, name) if name in taken else missing(name)) for name in known}
     stand_in = type("StandIn", (), {name: call for name, call in calls.items() if not name.startswith("__")})()
     monkeypatch.setattr(nidaqmx.utils, "_select_interpreter", lambda *_, **__: stand_in)
+    for task in ("protocol_run", "friction_hold"):  # the device is in the memory of this process alone
+        monkeypatch.setattr(f"sonolube.tasks.lab.{task}.ready_devices", lambda path: read_device_map(path).devices())

@@ -73,7 +73,7 @@ class Inputs:
             raise DeviceLost("slow inputs: does not answer")
 
     def start(self, channels: Sequence[str], *, sample_rate: float) -> float:
-        assert sample_rate == SLOW
+        assert sample_rate == next(iter(self.channels.values())).sample_rate
         self.names, self.taken, self.began = tuple(channels), 0, time.monotonic()
         return self.rate
 
@@ -391,7 +391,9 @@ def test_begin_gives_up_where_a_device_does_not_start(release: Event, monkeypatc
 
 
 def test_a_clock_that_is_slower_than_a_recording_is_said_to_have_given_nothing(tmp_path: Path) -> None:
-    folder = recorded(tmp_path, inputs(rate=0.5))
+    slow = inputs(rate=0.5)
+    slow.channels = {name: replace(each, sample_rate=0.5) for name, each in slow.channels.items()}
+    folder = recorded(tmp_path, slow)
     found = read_run(folder)
     assert found.clocks == {}
     assert "clock slow gave no sample of pin_temperature, emission in a part" in found.caveats

@@ -6,6 +6,7 @@ the program never polls single samples.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from types import MappingProxyType
 from typing import Final, Protocol
 
@@ -15,9 +16,14 @@ from sonolube.checks import Floats
 from sonolube.errors import SonolubeError, words_of
 from sonolube.facts.protocol import Prompt
 from sonolube.laboratory.block import Block, Channel
+from sonolube.laboratory.verdict import Verdict
+from sonolube.text.units import format_si
 
 SILENT: Final = "clock silent"
 """Kind of the note that an acquisition with a clock of its own gave no sample while it was to be recorded."""
+
+RATE_ERROR: Final = 0.05
+"""Share by which the sample rate of hardware may differ from the one asked for."""
 
 
 WAVEFORMS: Final[Mapping[str, Callable[[Floats], Floats]]] = MappingProxyType(
@@ -86,6 +92,30 @@ def require_gapless(block: Block, sample: int, *, device: str) -> None:
     """Raise SamplesLost where a block does not begin with the sample that follows."""
     if block.first_sample != sample:
         raise SamplesLost(f"{device}: {block.first_sample - sample} samples are missing after sample {sample}")
+
+
+def require_rate(given: float, wanted: float, *, device: str) -> float:
+    """Sample rate that hardware has chosen, within five per cent of the one asked for; raises DeviceError beyond.
+
+    Limits are held to channels that resolve the drive at the rate asked for, and levels to their number of samples.
+    """
+    if not abs(given - wanted) <= RATE_ERROR * wanted:
+        told = f"samples at {format_si(given, 'Hz')} where {format_si(wanted, 'Hz')} was asked for"
+        raise DeviceError(f"{device}: {told}; choose a rate that it has")
+    return given
+
+
+def require_whole(block: Block, *, samples: int, channels: int, sample_rate: float, device: str) -> None:
+    """Raise DeviceError where a block has other samples, channels or rate than asked for, or an infinite value."""
+    shape = block.values.shape
+    if shape != (samples, channels):
+        told = f"values of shape {shape} where {samples} samples of {channels} channels were asked for"
+        raise DeviceError(f"{device}: gives {told}")
+    if not abs(block.sample_rate - sample_rate) <= RATE_ERROR * sample_rate:
+        told = f"from {format_si(sample_rate, 'Hz')} to {format_si(block.sample_rate, 'Hz')}"
+        raise DeviceError(f"{device}: has changed its sample rate {told}")
+    if np.isinf(block.values).any():
+        raise DeviceError(f"{device}: gives an infinite value; look at the range of its inputs")
 
 
 class Device(Protocol):
@@ -176,6 +206,25 @@ class OutputGuard(Device, Protocol):
         """Switch the outputs off; safe to call at any time, from any thread."""
 
 
+class SwitchOff(Protocol):
+    """What has the outputs of a run apart from the run's program, and switches them off where that cannot."""
+
+    folder: Path | None
+    """Record of the run, which it closes then."""
+
+    def begin(self) -> None:
+        """Begin to wait for the outputs, before any device is connected; raises DeviceLost where it cannot."""
+
+    def tell(self, verdict: Verdict) -> None:
+        """Keep the verdict of the run, whose record is not closed yet."""
+
+    def end(self) -> None:
+        """End after the record was closed; harmless where that was done before."""
+
+    def watch(self) -> None:
+        """Raise DeviceLost where it is gone; called with every block."""
+
+
 class Recorder(Protocol):
     """Record of a run, as `sonolube.laboratory.records` keeps it."""
 
@@ -228,6 +277,8 @@ class Devices:
         Acquisitions with a clock and a sample rate of their own, by name; their channels state the rate.
     clock : callable or None
         Time of virtual devices, in s, which goes on while they are read; None where that of the computer counts.
+    switch_off : SwitchOff or None
+        What has drive, motor and guard, where it is not this program.
     """
 
     acquisition: Acquisition
@@ -242,6 +293,7 @@ class Devices:
     attend: Callable[[Prompt], None] | None = None
     clock: Callable[[], float] | None = None
     further: Mapping[str, Acquisition] = field(default_factory=dict)
+    switch_off: SwitchOff | None = None
 
     @property
     def channels(self) -> Mapping[str, Channel]:

@@ -17,7 +17,16 @@ import numpy as np
 from sonolube.errors import SonolubeError
 from sonolube.laboratory import supervision
 from sonolube.laboratory.block import BLOCK_DURATION, Block
-from sonolube.laboratory.devices import SILENT, Acquisition, DeviceError, Devices, Recorder, require_gapless
+from sonolube.laboratory.devices import (
+    SILENT,
+    Acquisition,
+    DeviceError,
+    Devices,
+    Recorder,
+    require_gapless,
+    require_rate,
+    require_whole,
+)
 from sonolube.laboratory.interlocks import Interlock, first_trip
 from sonolube.laboratory.standing_rig import still_on
 from sonolube.laboratory.states import Event, RunControl, RunEnded
@@ -287,7 +296,7 @@ class _Reader:
         wanted = next(iter(self.device.channels.values())).sample_rate
         assert wanted is not None
         began = time.monotonic()
-        rate = float(self.device.start(self._names, sample_rate=wanted))
+        rate = require_rate(float(self.device.start(self._names, sample_rate=wanted)), wanted, device=self.device.name)
         count, taken = max(1, round(BLOCK_DURATION * rate)), 0
         while not self.has_ended.is_set():
             allowed = supervision.LATE + supervision.CLOCK_ERROR * (time.monotonic() - began)
@@ -295,6 +304,7 @@ class _Reader:
                 self._rate, self._due = rate, began + (taken + count) / rate + allowed
             self.has_started.set()
             block = self.device.read(count)
+            require_whole(block, samples=count, channels=len(self._names), sample_rate=rate, device=self.device.name)
             require_gapless(block, taken, device=self.device.name)
             taken = block.next_sample
             self._take(block)

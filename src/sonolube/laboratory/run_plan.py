@@ -233,13 +233,16 @@ def begin_record(
     plan: RunPlan, devices: Devices, *, out: Path, facts: Mapping[str, str | float] | None = None
 ) -> RunRecorder:
     """Begin the record of a plan below a folder, with its files and what is known of it."""
-    return new_run(
+    recorder = new_run(
         out,
         title=plan.protocol.title,
         protocol=protocol_text(plan.protocol),
         files=_files(plan),
         facts=_facts(plan, devices) | dict(facts or {}),
     )
+    if devices.switch_off is not None:
+        devices.switch_off.folder = recorder.folder
+    return recorder
 
 
 def _files(plan: RunPlan) -> dict[str, str]:

@@ -251,6 +251,8 @@ class SupervisedRun(ABC):
                 held.enter_context(reserved(self._devices.resources))
                 self._prepare(advance)
                 self._clocks.begin(self._end_if_asked)
+                if self._devices.switch_off is not None:
+                    self._devices.switch_off.begin()
                 self._is_connected = True
                 connect_devices(self._devices)
                 self._happens(Event.PREPARED)
@@ -306,7 +308,9 @@ class SupervisedRun(ABC):
 
     def _close(self) -> None:
         """Switch everything off, release the devices and close the record."""
-        verdict = self._verdict() if self._is_connected else None
+        verdict, switch_off = self._verdict() if self._is_connected else None, self._devices.switch_off
+        if verdict is not None and switch_off is not None:
+            switch_off.tell(verdict)
         before = self._sampling.stop, self._clocks.end
         for reason in release_devices(self._devices, *before) if self._is_connected else tried(*before):
             self._note(Event.DEVICE_ERROR.value, reason=reason)
@@ -315,3 +319,5 @@ class SupervisedRun(ABC):
         self._happens(Event.OFF if is_off else Event.NOT_OFF, "" if verdict is None or is_off else verdict.text)
         if self._recorder is not None:
             self._recorder.finish(self._present.outcome, reason=self._present.reason)
+        if switch_off is not None:
+            switch_off.end()

@@ -17,7 +17,17 @@ from typing import Any, Final
 
 from sonolube.errors import SonolubeError
 from sonolube.laboratory.block import Block
-from sonolube.laboratory.devices import Acquisition, DeviceError, Devices, DriveSetting, DriveSource, Motor, fault_of
+from sonolube.laboratory.devices import (
+    Acquisition,
+    DeviceError,
+    Devices,
+    DriveSetting,
+    DriveSource,
+    Motor,
+    fault_of,
+    require_rate,
+    require_whole,
+)
 from sonolube.text.units import format_si
 
 LATE: Final = 2.0
@@ -28,6 +38,7 @@ CLOCK_ERROR: Final = 2e-4
 
 _LOOK: Final = 0.1  # s, between two looks at the clock
 _SWITCHING: Final = 10.0  # s, for a device that switches off, stops or closes
+_SWITCHING_APART: Final = 30.0  # s, where a process of its own does that, which may have to begin anew
 _RETURNING: Final = 10.0  # s, for a setting that was late, before the outputs count as not under control
 _CONNECTING: Final = 60.0  # s
 _PACE: Final = 0.05  # s, time of a block before the first one was read
@@ -78,6 +89,7 @@ class Supervisor:
 
     def __init__(self, devices: Devices) -> None:
         self._hardware, self._guard = devices, devices.guard
+        self._switching = _SWITCHING if devices.switch_off is None else _SWITCHING_APART
         self.devices = replace(
             devices,
             acquisition=_SupervisedAcquisition(devices.acquisition, self),
@@ -143,11 +155,11 @@ class Supervisor:
     def release(self, what: str, function: Callable[[], Any]) -> None:
         """Call what switches off or releases, in a thread of its own where the run was late."""
         if not self.reason:
-            self.call(what, function, limit=_SWITCHING)
+            self.call(what, function, limit=self._switching)
             return
-        failures = _all_within(_SWITCHING, [(what, function)])
-        if failures:
-            raise DeviceError("; ".join(failures))
+        (failure,) = all_within(self._switching, [(what, function)])
+        if failure:
+            raise DeviceError(failure)
 
     def turns_on(self, output: object) -> None:
         """Record that a device is on, and enable the outputs by the guard."""
@@ -168,7 +180,9 @@ class Supervisor:
             self.release(f"{self._guard.name}: disable", self._guard.disable)
 
     def renew(self) -> None:
-        """Renew the watchdog of the guard."""
+        """Renew the watchdog of the guard, and look whether what has the outputs is alive."""
+        if self._hardware.switch_off is not None:
+            self._hardware.switch_off.watch()
         if self._guard is not None and self._on:
             self.call(f"{self._guard.name}: renew", self._guard.renew, limit=self.pace + LATE)
 
@@ -192,7 +206,7 @@ class Supervisor:
         outputs = (self._hardware.drive, self._hardware.motor)
         first = [] if self._guard is None else [(f"{self._guard.name}: disable", self._guard.disable)]
         calls = [(f"{each.name}: off", getattr(each, "halt", each.off)) for each in outputs]
-        return _all_within(_SWITCHING, [*first, *calls])
+        return list(filter(None, all_within(self._switching, [*first, *calls])))
 
     def settle(self) -> list[str]:
         """After a call that was late: wait for it, switch off anew, and return what failed or may still switch on."""
@@ -267,7 +281,7 @@ class _SupervisedAcquisition(_Supervised):
     def __init__(self, device: Acquisition, supervisor: Supervisor) -> None:
         super().__init__(device, supervisor)
         self.channels = device.channels
-        self._rate, self._began, self._samples = 0.0, 0.0, 0
+        self._rate, self._count, self._began, self._samples = 0.0, 0, 0.0, 0
 
     def connect(self) -> None:
         """Connect the inputs, then the guard, before any output."""
@@ -277,7 +291,8 @@ class _SupervisedAcquisition(_Supervised):
     def start(self, channels: Sequence[str], *, sample_rate: float) -> float:
         """Start to sample."""
         start = partial(self._device.start, channels, sample_rate=sample_rate)
-        self._rate = float(self._supervisor.call(f"{self.name}: start", start, limit=_SWITCHING))
+        given = float(self._supervisor.call(f"{self.name}: start", start, limit=_SWITCHING))
+        self._rate, self._count = require_rate(given, sample_rate, device=self.name), len(channels)
         self._began, self._samples = self._supervisor.now(), 0
         return self._rate
 
@@ -295,6 +310,7 @@ class _SupervisedAcquisition(_Supervised):
             limit=min(due, lasts) + allowed,
             otherwise=f"{self.name}: a block is late by more than {format_si(LATE, 's')}",
         )
+        require_whole(block, samples=samples, channels=self._count, sample_rate=self._rate, device=self.name)
         self._supervisor.renew()
         return block
 
@@ -351,8 +367,11 @@ class _SupervisedMotor(_SupervisedOutput):
             self._supervisor.is_off(self)
 
 
-def _all_within(limit: float, calls: Sequence[tuple[str, Callable[[], Any]]]) -> list[str]:
-    """Make calls at the same time, each in a thread of its own, and return those that failed or did not return."""
+def all_within(limit: float, calls: Sequence[tuple[str, Callable[[], Any]]]) -> list[str]:
+    """Make calls at the same time, each in a thread of its own, and say of each why it failed; empty where it did not.
+
+    `calls`: what each is, such as "motor: off", and the function; `limit`: time in which it has to return. [s]
+    """
     made = [_Call(what, function) for what, function in calls]
     threads = [Thread(target=call.make, daemon=True, name="sonolube off") for call in made]
     for thread in threads:
@@ -365,6 +384,5 @@ def _all_within(limit: float, calls: Sequence[tuple[str, Callable[[], Any]]]) ->
             failures.append(f"{call.what} did not return within {format_si(limit, 's')}")
             continue
         failure = call.answers.get()[1]
-        if failure is not None:
-            failures.append(fault_of(call.what, failure))
+        failures.append("" if failure is None else fault_of(call.what, failure))
     return failures

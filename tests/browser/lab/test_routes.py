@@ -280,8 +280,9 @@ def test_a_lost_run_is_recovered_once_its_outputs_were_seen_off(bench: Bench) ->
     found = bench.state()
     assert found["lost"] is None
     assert {name: found["run"][name] for name in ("state", "outcome", "reason", "is_lost", "is_ended")} == {
-        "state": "lost", "outcome": "failed", "reason": "its program was killed", "is_lost": True, "is_ended": True,
+        "state": "safe", "outcome": "failed", "reason": "its program was killed", "is_lost": False, "is_ended": True,
     }  # fmt: skip
+    assert found["run"]["outputs"] == "the operator has cut the power and seen that motor and drive are off"
 
 
 def test_recordings_and_tables_become_uploads(bench: Bench, tmp_path: Path) -> None:

@@ -178,6 +178,7 @@ def test_the_output_is_switched_off_over_another_connection_while_a_call_hangs(
     bench: Bench, monkeypatch: MonkeyPatch
 ) -> None:
     generator, _, device = bench
+    be_patient(monkeypatch)
     device.connect()
     device.drive(SETTING)
     hangs, release = Event(), Event()

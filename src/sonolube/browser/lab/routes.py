@@ -220,8 +220,7 @@ class Laboratory:
             raise InvalidInput("is_off: say true when you have seen that motor and drive are off", key="is_off")
         status, found = await self._pool.answer("lab_recover", {"folder": lost.run_folder}, self._places)
         if status == 200:
-            ended = {"state": "lost", "outcome": "failed", "reason": "its program was killed", "is_lost": True}
-            write_private(lost.folder / END, {**_bare(lost), **ended, "is_ended": True})
+            _write_end(lost, "safe", "the operator has cut the power and seen that motor and drive are off")
         return json_response(found, status=status)
 
     async def _live(self, request: Request) -> Response:
@@ -285,7 +284,7 @@ class Laboratory:
         names = record_names(self._folder)
         self._ended = {name: self._ended[name] for name in names if name in self._ended}
         for name in names:
-            record = self._ended.get(name) or read_record(self._folder, name)
+            record = self._ended.get(name) or _settled(read_record(self._folder, name))
             if record.end is not None:
                 self._ended[name] = record
             if record.process is not None or record.end is not None:
@@ -317,6 +316,26 @@ class Laboratory:
         lost = self._lost()
         if lost is not None:
             raise InvalidInput(_LOST.format(title=str(lost.about.get("title", lost.id))), key="lost")
+
+
+def _settled(record: RunnerRecord) -> RunnerRecord:
+    """Record of a runner; of one that was killed, as its switch-off process has ended the run."""
+    if not record.is_lost or not record.run_folder:
+        return record
+    from sonolube.laboratory.records import last_verdict
+    from sonolube.laboratory.verdict import Outputs
+
+    outputs = last_verdict(Path(record.run_folder))
+    if not outputs:
+        return record
+    _write_end(record, "failed" if outputs.startswith(Outputs.CUT_THE_POWER.value) else "safe", outputs)
+    return read_record(record.folder.parent, record.id)
+
+
+def _write_end(record: RunnerRecord, state: str, outputs: str) -> None:
+    """Write how a run has ended whose program was killed."""
+    ended = {"state": state, "outcome": "failed", "reason": "its program was killed", "outputs": outputs}
+    write_private(record.folder / END, {**_bare(record), **ended, "is_ended": True})
 
 
 def _holder(content: Mapping[str, Any]) -> str:

@@ -145,6 +145,11 @@ def read_device_map(path: str | Path) -> DeviceMap:
     return DeviceMap(entries=entries, files=MappingProxyType(files))
 
 
+def device_map_of(files: Mapping[str, str]) -> DeviceMap:
+    """Device map from texts that were read before: that of the map, then those of its calibrations, by name."""
+    return DeviceMap(entries=_entries(toml_content(next(iter(files.values())))), files=MappingProxyType(dict(files)))
+
+
 def device_map_schema() -> dict[str, Any]:
     """JSON schema (draft 2020-12) that every device map follows.
 
@@ -311,12 +316,3 @@ def _has_daqmx_driver() -> bool:
     except (DeviceError, ImportError):
         return False
     return True
-
-
-def ready_devices(device_map: Path) -> Devices:
-    """Devices of a map, whose packages and drivers are installed."""
-    found = read_device_map(device_map)
-    missing = missing_parts(found)
-    if missing:
-        raise InvalidInput(f"{device_map}: {'; '.join(missing)}")
-    return found.devices()

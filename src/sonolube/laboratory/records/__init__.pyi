@@ -14,6 +14,7 @@ from .run import (
     Note as Note,
     Run as Run,
     RunSummary as RunSummary,
+    last_verdict as last_verdict,
     read_run as read_run,
     run_folders as run_folders,
     run_summary as run_summary,

@@ -28,6 +28,7 @@ from sonolube.laboratory.records.run_folder import (
     recording_path,
     write_run_facts,
 )
+from sonolube.laboratory.verdict import Verdict
 from sonolube.operating_system import remove_file
 from sonolube.storage.files import clear_unfinished, is_locked, locked_folder, unfinished_file
 from sonolube.storage.growing_files import AppendedFile
@@ -151,12 +152,14 @@ class Recovery:
     done: tuple[str, ...]
 
 
-def recover_run(folder: Path) -> Recovery:
+def recover_run(folder: Path, *, outputs: Verdict | None = None) -> Recovery:
     """Complete the record of a run whose program was killed, or whose recording could not be written.
 
     Parameters
     ----------
     folder : Path
+    outputs : Verdict, optional
+        On motor and drive, by what has switched them off in place of the program.
 
     Returns
     -------
@@ -182,7 +185,7 @@ def recover_run(folder: Path) -> Recovery:
             done.append(_set_aside(folder / DOCUMENTS, documents.whole_bytes))
         parts = _mended_parts(folder, done)
         if not documents.of("stop"):
-            _close_documents(folder, known, parts)
+            _close_documents(folder, known, parts, outputs)
             done.append("marked as interrupted")
         clear_unfinished(folder)
         done += [f"{name} written" for name in write_missing(folder, known, parts.items())]
@@ -229,7 +232,7 @@ def _mended_parts(folder: Path, done: list[str]) -> dict[int, RawPart]:
     return parts
 
 
-def _close_documents(folder: Path, known: RunFacts, parts: dict[int, RawPart]) -> None:
+def _close_documents(folder: Path, known: RunFacts, parts: dict[int, RawPart], outputs: Verdict | None) -> None:
     """Write the documents with which an interrupted run ends."""
     earlier = read_documents(folder)
     log = DocumentLog(folder, earlier=earlier if (folder / DOCUMENTS).exists() else None)
@@ -242,6 +245,9 @@ def _close_documents(folder: Path, known: RunFacts, parts: dict[int, RawPart]) -
                 log.part(number, part)
             log.end_part(read_documents(folder), number, part)
         last = max((part.begun + part.duration for part in parts.values()), default=known.begun)
+        if outputs is not None:
+            last = max(last, time.time())
+            log.note("off" if outputs.is_off else "not off", time=last, sample=None, facts={"outputs": outputs.text})
         log.stop("interrupted", reason="the program ended before the run", time=last)
     finally:
         with suppress(InvalidInput):

@@ -309,6 +309,15 @@ def _sample_rates(documents: ReadDocuments) -> dict[str, float]:
     return rates
 
 
+def last_verdict(folder: Path) -> str:
+    """Verdict on motor and drive with which the record of a run ends; empty without one, or where it does not end."""
+    documents = read_documents(folder)
+    if not documents.of("stop"):
+        return ""
+    found = (note_of(event).facts.get("outputs") for event in reversed(documents.of("event")))
+    return next((str(outputs) for outputs in found if outputs), "")
+
+
 def note_of(event: Mapping[str, Any]) -> Note:
     """Note that an event document holds."""
     data, time = event["data"], event.get("time")

@@ -7,9 +7,9 @@ from typing import Annotated, Any, Unpack
 from sonolube.design.control import Amplifier, ControlDesign, ControlSettings, design_control
 from sonolube.errors import InvalidInput
 from sonolube.laboratory import RunControl, closed_loop, closed_loop as holds, exit_code
-from sonolube.laboratory.drivers.device_map import ready_devices
 from sonolube.laboratory.records import Run, read_run
 from sonolube.laboratory.run_plan import RunPlan, begin_record, require_free
+from sonolube.laboratory.switch_off import ready_devices
 from sonolube.laboratory.virtual_tribometer import virtual_tribometer
 from sonolube.models.actuator.drive import Drive
 from sonolube.report import Drawing

@@ -14,11 +14,11 @@ from sonolube.errors import InvalidInput
 from sonolube.facts.protocol import Protocol, flattened, protocol_at, protocol_by_name_or_file
 from sonolube.laboratory import RunControl, RunState, RunWatcher, exit_code, require_possible, run_protocol
 from sonolube.laboratory.devices import Devices
-from sonolube.laboratory.drivers.device_map import ready_devices
 from sonolube.laboratory.dry_run import DryRun, dry_run_chart
 from sonolube.laboratory.records import Run, export_run, read_run
 from sonolube.laboratory.run_plan import RunPlan, begin_record, require_free
 from sonolube.laboratory.runner import Operator
+from sonolube.laboratory.switch_off import ready_devices
 from sonolube.laboratory.virtual_tribometer import GROOVE_DIAMETER, VirtualTribometer, virtual_tribometer
 from sonolube.laboratory.watching import told
 from sonolube.report import Drawing
