@@ -34,6 +34,12 @@ KEYWORDS = {  # long forms by the short ones
     "BPSK": "BPSK",
     "PWM": "PWM",
     "SUM": "SUM",
+    "MODE": "MODE",
+    "COMB": "COMBINE",
+    "FEED": "FEED",
+    "TRAC": "TRACK",
+    "QUES": "QUESTIONABLE",
+    "COND": "CONDITION",
 }
 FUNCTIONS = {"SIN": 30e6, "SQU": 30e6, "TRI": 200e3, "RAMP": 200e3}  # highest frequency in Hz
 INTO_50_OHM = 0.5
@@ -54,6 +60,12 @@ class Generator:
     limits: tuple[float, float] = (-10.0, 10.0)
     are_limits_on: bool = False
     modulations: dict[str, bool] = field(default_factory=lambda: {"SWE": True})
+    unit: str = "VRMS"
+    mode: str = "CW"
+    combined: str = "CH2"
+    tracks: str = "ON"
+    tripped: int = 0
+    lacks: tuple[str, ...] = ()  # first parts of commands that the model does not have
     errors: list[str] = field(default_factory=list)
     heard: list[str] = field(default_factory=list)
     is_mute: bool = False
@@ -87,6 +99,9 @@ class Generator:
         path = tuple(_short(part) for part in header.rstrip("?").split(":"))
         path = path[1:] if path[0] in ("SOUR", "SOUR1") else path
         path = tuple(part.removesuffix("1") for part in path)
+        if path[0] in self.lacks:
+            self.errors.append('-113,"Undefined header"')
+            return None
         if header.endswith("?"):
             return self._told(path)
         if not self._set(path, value.strip().upper()):
@@ -96,8 +111,21 @@ class Generator:
     def _told(self, path: tuple[str, ...]) -> str | None:
         if path == ("SYST", "ERR"):
             return self.errors.pop(0) if self.errors else '+0,"No error"'
-        if path == ("OUTP",):
-            return "1" if self.is_on else "0"
+        states = {
+            ("OUTP",): "1" if self.is_on else "0",
+            ("OUTP", "LOAD"): "9.9E+37" if self.load == "INF" else "+5.0000000000000E+01",
+            ("VOLT",): f"{self.amplitude:+.13E}",
+            ("VOLT", "OFFS"): f"{self.offset:+.13E}",
+            ("VOLT", "UNIT"): self.unit,
+            ("FREQ",): f"{self.frequency:+.13E}",
+            ("FREQ", "MODE"): self.mode,
+            ("COMB", "FEED"): self.combined,
+            ("TRAC",): self.tracks,
+            ("STAT", "QUES", "COND"): f"{self.tripped:+d}",
+            **{(name, "STAT"): str(int(self.modulations.get(name, False))) for name in MODULATIONS},
+        }
+        if path in states:
+            return states[path]
         self.errors.append('-113,"Undefined header"')
         return None
 
@@ -109,7 +137,9 @@ class Generator:
             ("FREQ",): self._set_frequency,
             ("VOLT",): lambda text: self._set_levels(text, "amplitude"),
             ("VOLT", "OFFS"): lambda text: self._set_levels(text, "offset"),
-            ("VOLT", "UNIT"): lambda text: None,
+            ("VOLT", "UNIT"): lambda text: setattr(self, "unit", text),
+            ("COMB", "FEED"): lambda text: setattr(self, "combined", text),
+            ("TRAC",): lambda text: setattr(self, "tracks", text),
             ("VOLT", "LIM", "STAT"): self._switch_limits,
             ("VOLT", "LIM", "HIGH"): lambda text: self._set_limit(1, float(text)),
             ("VOLT", "LIM", "LOW"): lambda text: self._set_limit(0, float(text)),

@@ -54,6 +54,7 @@ RIGOL: Final[Mapping[str, tuple[str, str]]] = {
     "sweep": ("SOURce1:SWEep:STATe", _SWITCH),
     "burst": ("SOURce1:BURSt[:STATe]", _SWITCH),
     "sum": ("SOURce1:SUM[:STATe]", _SWITCH),
+    "track": ("SOURce1:TRACK", f"{_SWITCH}|INVERTED"),
 }
 SIGLENT: Final[Mapping[str, tuple[str, str]]] = {
     "output": ("C1:OUTP", _SWITCH),
@@ -65,9 +66,10 @@ SIGLENT: Final[Mapping[str, tuple[str, str]]] = {
     "modulation": ("C1:MDWV STATE,", _SWITCH),
     "sweep": ("C1:SWWV STATE,", _SWITCH),
     "burst": ("C1:BTWV STATE,", _SWITCH),
+    "combined": ("C1:CMBN ", _SWITCH),
 }
 HIGH_IMPEDANCE: Final = ("INF", "INFINITY", "HZ")
-MODULATIONS: Final = ("am", "fm", "pm", "fsk", "pwm", "burst", "modulation", "sweep", "sum")
+MODULATIONS: Final = ("am", "fm", "pm", "fsk", "pwm", "burst", "modulation", "sweep", "sum", "track", "combined")
 
 
 @dataclass
@@ -124,15 +126,31 @@ class StrictGenerator:
             return self.errors.pop(0) if self.errors else '0,"No error"'
         if not self.has_error_queue:
             return self._told_by_siglent(line)
-        for name in ("output", "frequency", "amplitude", "offset"):
+        if line.lstrip(":") == "SOUR1:FREQ:MODE?":
+            return self.values.get("mode", "CW")
+        for name in self.commands:
             if line.endswith("?") and documented(*self.commands[name]).fullmatch(line[:-1]):
-                return (self.on if self.is_on else self.off) if name == "output" else f"{float(self.values[name]):.6E}"
+                return self._answer_of(name)
         return None
+
+    def _answer_of(self, name: str) -> str:
+        """What is set of a name, as the instrument writes it."""
+        value = self.values.get(name, "")
+        if value in ("ON", "OFF"):
+            return self.on if value == "ON" else self.off
+        if name in ("frequency", "amplitude", "offset"):
+            return f"{float(value):.6E}"
+        return "9.9E+37" if value in HIGH_IMPEDANCE else value
 
     def _told_by_siglent(self, line: str) -> str | None:
         value = self.values
         if line == "C1:OUTP?":
             return f"C1:OUTP {value['output']},LOAD,{value['load']},PLRT,NOR"
+        states = {"C1:MDWV?": "modulation", "C1:SWWV?": "sweep", "C1:BTWV?": "burst"}
+        if line in states:
+            return f"{line[:-1]} STATE,{value[states[line]]}"
+        if line == "C1:CMBN?":
+            return f"C1:CMBN {value['combined']}"
         if line == "C1:BSWV?":
             frequency, amplitude, offset = (float(value[name]) for name in ("frequency", "amplitude", "offset"))
             return (
@@ -145,7 +163,7 @@ class StrictGenerator:
         """Take a command; whether it is documented."""
         for name, (command, parameter) in self.commands.items():
             spelled = documented(command, parameter)
-            if command.endswith(","):  # a parameter and its value
+            if command.endswith((",", " ")):  # a parameter and its value
                 spelled = re.compile(re.escape(command) + f"(?P<value>{parameter})")
             found = spelled.fullmatch(line)
             if found and found["value"] is not None:

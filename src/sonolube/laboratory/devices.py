@@ -161,7 +161,8 @@ class DriveSource(Device, Protocol):
     Notes
     -----
     Drive sources and motors may have a method `halt`, which switches the output off from another thread while a call
-    to them hangs. Without it `off` is called there.
+    to them hangs. Without it `off` is called there. A drive source may have a method `read_back`, which asks the
+    instrument what its output is, raises DeviceError where that is not what was set, and returns the answers in a line.
     """
 
     voltage_maximum: float

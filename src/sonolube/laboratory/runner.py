@@ -129,6 +129,7 @@ class _Run(SupervisedRun):
         for point, following in pairwise(self._points):
             self._reach(point)
             self._run_until(following.time, advance)
+        self._read_back()
 
     def _switch_off(self) -> list[str]:
         """Switch drive and motor off where they were connected, and return what failed; never raises."""
@@ -165,6 +166,14 @@ class _Run(SupervisedRun):
             self._sampling.record(point.channels, sample_rate=point.sample_rate)
             self._note("acquire", step=point.step, sample_rate=self._sampling.rate)
         self._set_outputs()
+        self._read_back()
+
+    def _read_back(self) -> None:
+        """Have the source of the drive say what it gives, and note that; it raises where that is not what was set."""
+        read_back = getattr(self._devices.drive, "read_back", None)
+        answers = read_back() if read_back is not None and self._drive is not None else ""
+        if answers:
+            self._note("read back", step=self._point.step, answers=answers)
 
     def _sample_again(self) -> None:
         """Start to sample what is recorded now, or next."""

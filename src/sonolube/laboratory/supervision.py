@@ -352,6 +352,13 @@ class _SupervisedDrive(_SupervisedOutput):
         """Set the output."""
         self._set("drive", partial(self._device.drive, setting))
 
+    def read_back(self) -> str:
+        """Answers of the source on its output; empty where it tells nothing."""
+        ask = getattr(self._device, "read_back", None)
+        if ask is None:
+            return ""
+        return str(self._supervisor.call(f"{self.name}: read back", ask, limit=self._supervisor.pace + LATE))
+
 
 class _SupervisedMotor(_SupervisedOutput):
     """Motor of the disc."""

@@ -79,10 +79,70 @@ def test_the_output_is_switched_on_last(bench: Bench) -> None:
     device.connect()
     generator.heard.clear()
     device.drive(SETTING)
-    assert [line.partition(";")[0] for line in generator.heard] == ["SOUR1:FREQ 22000", "SOUR1:VOLT 1.4", "OUTP1 ON"]
+    assert settings_in(generator) == ["SOUR1:FREQ 22000", "SOUR1:VOLT 1.4", "OUTP1 ON"]
     generator.heard.clear()
     device.drive(DriveSetting(voltage_peak_to_peak=28.0, frequency=22.1e3))
-    assert [line.partition(";")[0] for line in generator.heard] == ["SOUR1:FREQ 22100"]
+    assert settings_in(generator) == ["SOUR1:FREQ 22100"]
+
+
+def settings_in(generator: Generator) -> list[str]:
+    """Commands that the generator has heard, without queries."""
+    commands = (line.partition(";")[0] for line in generator.heard)
+    return [command for command in commands if not command.endswith("?")]
+
+
+CHANGED = {  # at the panel, by another program or the instrument itself, and what is said of it
+    "load": ("50", r"answers '\+5.0000000000000E\+01' to 'OUTP1:LOAD\?', of its load"),
+    "unit": ("VRMS", r"answers 'VRMS' to 'SOUR1:VOLT:UNIT\?', of its unit; VPP was set up"),
+    "mode": ("SWE", r"of its frequency mode; CW or FIX\* was set up"),
+    "modulations": ({"AM": True}, r"to 'SOUR1:AM:STAT\?', of its modulation"),
+    "combined": ("CH2", r"'SOUR1:COMB:FEED\?', of its combination"),
+    "tracks": ("ON", r"'SOUR1:TRAC\?', of its combination"),
+    "tripped": (1, r"'STAT:QUES:COND\?', of its trips"),
+    "amplitude": (0.7, "has the amplitude 700 mV where 1.4 V was set"),
+    "offset": (0.5, "has the offset 500 mV where 0 V was set"),
+    "frequency": (21e3, "has the frequency 21 kHz where 22 kHz was set"),
+    "is_on": (False, r"answers '0' to 'OUTP1\?'; expected '1'"),
+}
+
+
+@pytest.mark.parametrize("name", CHANGED)
+def test_an_output_that_was_changed_behind_the_program_is_found_when_it_is_read_back(name: str, bench: Bench) -> None:
+    generator, _, device = bench
+    device.connect()
+    device.drive(SETTING)
+    told = device.read_back()
+    assert "OUTP1:LOAD? 9.9E+37; SOUR1:VOLT:UNIT? VPP; SOUR1:FREQ:MODE? CW" in told
+    assert "SOUR1:VOLT? +1.4000000000000E+00; " in told
+    assert told.endswith("; output on")
+    value, said = CHANGED[name]
+    setattr(generator, name, value)
+    with raises(DeviceError, match=said):
+        device.read_back()
+    device.off()
+    assert not generator.is_on
+
+
+@pytest.mark.parametrize("name", ["load", "unit", "combined"])
+def test_an_output_that_does_not_take_its_setup_is_never_switched_on(
+    name: str, bench: Bench, monkeypatch: MonkeyPatch
+) -> None:
+    generator, _, device = bench
+    device.connect()
+    setattr(generator, name, CHANGED[name][0])
+    with raises(DeviceError, match="was set up"):
+        device.drive(SETTING)
+    assert "OUTP1 ON" not in [line.partition(";")[0] for line in generator.heard]
+
+
+def test_what_a_model_has_no_query_for_is_said_to_be_not_read_back(bench: Bench, monkeypatch: MonkeyPatch) -> None:
+    generator, _, device = bench
+    generator.identity, generator.lacks = "Agilent Technologies,33511B,MY50001234,2.03", ("STAT",)
+    monkeypatch.setattr("sonolube.laboratory.drivers.visa_connection.TIMEOUT", 0.2)
+    device.connect()
+    device.drive(SETTING)
+    assert device.read_back().endswith("; output on; not read back: combination, trips")
+    assert not [line for line in generator.heard if "COMB" in line or "TRAC" in line]
 
 
 @examples(15, suppress_health_check=UNCHECKED)

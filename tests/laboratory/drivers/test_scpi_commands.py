@@ -76,6 +76,60 @@ def test_a_generator_is_off_before_anything_else_and_on_after_all_was_set(bench:
     assert generator.unsafe == []
 
 
+CHANGED = {  # at the panel or by the instrument itself, where it has that
+    "load": "50", "unit": "VRMS", "am": "ON", "burst": "ON", "modulation": "ON", "sum": "ON", "track": "ON",
+    "combined": "ON", "amplitude": "0.9", "offset": "0.3", "frequency": "20000", "output": "OFF",
+}  # fmt: skip
+
+
+def test_an_output_that_was_changed_behind_the_program_is_found_when_it_is_read_back(bench: Bench) -> None:
+    generator, drive = bench.generator, bench.drive
+    drive.connect()
+    drive.drive(SETTING)
+    for name in CHANGED.keys() & generator.commands.keys():
+        assert drive.read_back().endswith("; output on")
+        before, generator.values[name] = generator.values[name], CHANGED[name]
+        with raises(DeviceError, match=r"was set|expected"):
+            drive.read_back()
+        generator.values[name] = before
+    generator.values["load"] = "50"
+    drive.off()
+    with raises(DeviceError, match=r"of its load; .* was set up"):
+        drive.drive(SETTING)
+    assert not generator.is_on
+
+
+def test_what_a_map_has_no_check_for_is_told_by_it() -> None:
+    told = {name: read_device_map(MAPS / f"{name}.toml").devices().description for name in GENERATORS}
+    assert {name: each.get("drive not read back") for name, each in told.items()} == {
+        "tektronix_afg": "combination, trips",
+        "rigol_dg1000z": "frequency mode, trips",
+        "siglent_sdg": "unit, frequency mode, trips",
+    }
+
+
+def test_an_instrument_is_given_the_time_that_its_map_states(monkeypatch: MonkeyPatch, tmp_path: Path) -> None:
+    text = (MAPS / "tektronix_afg.toml").read_text(encoding="utf-8")
+    (tmp_path / "slow.toml").write_text(text.replace("amplifier =", 'timeout = "7.5 s"\namplifier =', 1))
+    (tmp_path / "normal_load.csv").write_text((MAPS / "normal_load.csv").read_text(encoding="utf-8"))
+    entry = read_device_map(tmp_path / "slow.toml").entries.drive
+    given: list[tuple[float, float]] = []
+
+    class Manager:
+        def __init__(self, library: str) -> None:
+            self.library = library
+
+        def open_resource(self, resource: str, **settings: float) -> None:
+            given.append((settings["timeout"], settings["open_timeout"]))
+
+    import pyvisa
+
+    monkeypatch.setattr(pyvisa, "ResourceManager", Manager)
+    entry.line("instrument").open()  # type: ignore[attr-defined]
+    read_device_map(MAPS / "tektronix_afg.toml").entries.drive.line("instrument").open()  # type: ignore[attr-defined]
+    assert given == [(7500, 7500), (2000, 2000)]  # ms
+
+
 def test_every_command_of_the_simulators_is_told_from_others() -> None:
     generator = GENERATORS["tektronix_afg"]()
     generator.answer("SOURCE1:VOLTAGE:LEVEL:IMMEDIATE:AMPLITUDE 1.5")

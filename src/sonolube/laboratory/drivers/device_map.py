@@ -89,6 +89,7 @@ class DeviceMap:
             "acquisition hardware": entries.acquisition.description,
             "drive": f"{drive.driver} {drive.where}, amplifier {gain} V/V, at most {most} at the actuator",
             "drive hardware": drive.description,
+            "drive not read back": ", ".join(drive.not_read_back).replace("_", " "),
             "amplifier": drive.amplifier,
             "motor": f"{motor.driver} {motor.where}, at most {format_si(motor.rotation_speed_maximum, '1/s')}",
             "motor hardware": motor.description,

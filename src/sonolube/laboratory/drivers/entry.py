@@ -316,6 +316,11 @@ class DriveEntry(DriverEntry):
         """That output and map allow. [Hz]"""
         return self.frequency_maximum
 
+    @property
+    def not_read_back(self) -> Sequence[str]:
+        """What the source does not tell of its output: all of it, where a driver says nothing else."""
+        return ["anything"]
+
     @abstractmethod
     def new_device(self) -> DriveSource:
         """Source, not connected."""

@@ -142,6 +142,55 @@ def send(line: VisaConnection, command: str, errors: ErrorEntry | None) -> None:
         raise DeviceError(f"{line.name}: refuses {command!r}: {'; '.join(complaints[:3])}")
 
 
+CHECKED: Final = ("load", "unit", "frequency_mode", "modulation", "combination", "trips")
+"""What makes another voltage of the same frequency, amplitude and offset, and is read back where a query tells it."""
+
+
+class CheckEntry(Table):
+    """Query whose answer shows that an output is as it was set up.
+
+    Parameters
+    ----------
+    of : str
+        load, unit, frequency_mode, modulation, combination or trips.
+    query : str
+    answer : str
+        Pattern of the answer, with * for any text; several between |.
+    """
+
+    of: Literal["load", "unit", "frequency_mode", "modulation", "combination", "trips"]
+    query: Line
+    answer: Line
+
+    def require(self, line: VisaConnection) -> str:
+        """Ask, and return the answer.
+
+        Raises
+        ------
+        DeviceError
+            If it is another: somebody at the panel, or the instrument itself, has changed the output.
+        """
+        heard = line.ask(self.query)
+        if not any(fnmatchcase(heard.upper(), each.strip().upper()) for each in self.answer.split("|")):
+            what, needed = self.of.replace("_", " "), self.answer.replace("|", " or ")
+            raise DeviceError(
+                f"{line.name}: answers {heard[:80]!r} to {self.query!r}, of its {what}; {needed} was set up"
+            )
+        return heard
+
+
+DIFFERENCES: Final = {"frequency": (1e-4, 0.0, "Hz"), "amplitude": (2e-3, 1e-3, "V"), "offset": (2e-3, 1e-3, "V")}
+"""Share, and absolute in a unit, by which a value that is read back may differ from the one that was set."""
+
+
+def require_set(name: str, *, found: float, wanted: float, device: str) -> None:
+    """Raise DeviceError where a generator has another frequency, amplitude or offset than the one that was set."""
+    share, absolute, unit = DIFFERENCES[name]
+    if not abs(found - wanted) <= share * abs(wanted) + absolute:
+        has, was = format_si(found, unit), format_si(wanted, unit)
+        raise DeviceError(f"{device}: has the {name} {has} where {was} was set")
+
+
 _LATE_PERIODS: Final = 1.0  # by which a query may begin late
 
 

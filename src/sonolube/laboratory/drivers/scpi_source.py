@@ -1,19 +1,26 @@
 """Function generators by SCPI commands stated in a device map, with an amplifier behind their output."""
 
 import re
-from typing import Annotated, Final, Literal, Self
+from collections.abc import Sequence
+from typing import Annotated, Literal, Self
 
-from pydantic import AfterValidator, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from sonolube.facts.protocol.quantity_text import SiText, Table
 from sonolube.laboratory.devices import DeviceError, DriveSetting, DriveSource
 from sonolube.laboratory.drivers.entry import DriveEntry, Line
-from sonolube.laboratory.drivers.scpi_instruments import ErrorEntry, ReplyEntry, ScpiEntry, require_identity, send
+from sonolube.laboratory.drivers.scpi_instruments import (
+    CHECKED,
+    CheckEntry,
+    ErrorEntry,
+    ReplyEntry,
+    ScpiEntry,
+    require_identity,
+    require_set,
+    send,
+)
 from sonolube.laboratory.drivers.visa_connection import SwitchedLine, VisaConnection
 from sonolube.text.units import format_si
-
-_DIFFERENCE: Final = {"frequency": (1e-4, 0.0, "Hz"), "amplitude": (2e-3, 1e-3, "V"), "offset": (2e-3, 1e-3, "V")}
-"""Share, and absolute in a unit, by which a value that is read back may differ from the one that was set."""
 
 
 def _with_value(text: str) -> str:
@@ -110,6 +117,9 @@ class ScpiSourceEntry(ScpiEntry, DriveEntry):
     error : ErrorEntry or None
     readback : ReadbackEntry
         Of frequency, amplitude and offset; all of them where there is no error queue.
+    checks : tuple of CheckEntry
+        Queries of load, unit, frequency mode, modulation, combination and trips, with the answers that must come before
+        the output is switched on and at each step.
     description, amplifier : str
         Model and serial number.
     amplifier_gain : float
@@ -133,6 +143,7 @@ class ScpiSourceEntry(ScpiEntry, DriveEntry):
     state: StateEntry
     error: ErrorEntry | None = None
     readback: ReadbackEntry = ReadbackEntry()
+    checks: Annotated[tuple[CheckEntry, ...], Field(strict=False, max_length=30)] = ()
 
     @model_validator(mode="after")
     def _require_safe(self) -> Self:
@@ -143,6 +154,12 @@ class ScpiSourceEntry(ScpiEntry, DriveEntry):
         if self.error is None and len(self.readback.replies) < 3:
             raise ValueError("without an error queue, readback needs frequency, amplitude and offset")
         return self
+
+    @property
+    def not_read_back(self) -> Sequence[str]:
+        """What neither a check nor a read-back tells."""
+        told = {each.of for each in self.checks} | set(self.readback.replies)
+        return [name for name in ("frequency", "amplitude", "offset", *CHECKED) if name not in told]
 
     def new_device(self) -> DriveSource:
         """Generator, not connected."""
@@ -181,6 +198,24 @@ class ScpiSource(SwitchedLine):
         with self._off_where_refused():
             self._send_setting(setting, amplitude=amplitude, offset=offset)
 
+    def read_back(self) -> str:
+        """Answers on the output, in one line; raises DeviceError where one is not as it was set."""
+        line, state = self._line, self._entry.state
+        told = [f"{check.query} {check.require(line)}" for check in self._entry.checks]
+        told += self._values()
+        self._require_state(line, state.on if self._is_on else state.off)
+        return "; ".join(dict.fromkeys([*told, f"output {'on' if self._is_on else 'off'}"]))
+
+    def _values(self) -> list[str]:
+        """Answers with frequency, amplitude and offset, which must be those that were set."""
+        told = []
+        for name, reply in self._entry.readback.replies.items():
+            answer = self._line.ask(reply.query)
+            found, wanted = reply.number(answer, device=self.name), float(self._set[name])
+            require_set(name, found=found, wanted=wanted, device=self.name)
+            told.append(f"{reply.query} {answer}")
+        return told
+
     def _switch_off(self, line: VisaConnection) -> None:
         """Switch the output off and have that confirmed, by no answer to an earlier command."""
         self._is_on = False
@@ -218,9 +253,10 @@ class ScpiSource(SwitchedLine):
         for name, value in [("frequency", setting.frequency), *voltages]:
             if self._set.get(name) != value:
                 self._send_value(name, value)
-        for name, reply in self._entry.readback.replies.items():
-            self._require_value(name, reply)
-        if not self._is_on:
+        if self._is_on:
+            self._values()
+        else:
+            self.read_back()
             send(self._line, self._entry.on, self._entry.error)
             self._require_state(self._line, self._entry.state.on)
             self._is_on = True
@@ -230,11 +266,3 @@ class ScpiSource(SwitchedLine):
         command: str = getattr(self._entry, name)
         send(self._line, command.replace("{value}", f"{value:.9g}"), self._entry.error)
         self._set[name] = value
-
-    def _require_value(self, name: str, reply: ReplyEntry) -> None:
-        """Raise where the generator has another value than the one that was set."""
-        wanted, found = float(self._set[name]), reply.number(self._line.ask(reply.query), device=self.name)
-        share, absolute, unit = _DIFFERENCE[name]
-        if not abs(found - wanted) <= share * abs(wanted) + absolute:
-            has, was = format_si(found, unit), format_si(wanted, unit)
-            raise DeviceError(f"{self.name}: has the {name} {has} where {was} was set")

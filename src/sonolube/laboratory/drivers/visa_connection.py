@@ -15,7 +15,7 @@ from typing import Annotated, Any, ClassVar, Final, Literal, TypeVar
 from pydantic import Field
 
 from sonolube.extras import EXTRAS, missing_package
-from sonolube.facts.protocol.quantity_text import Table
+from sonolube.facts.protocol.quantity_text import SiText, Table
 from sonolube.laboratory.devices import DeviceError, DeviceLost
 from sonolube.laboratory.drivers.entry import Resource, VisaLibrary
 
@@ -57,7 +57,7 @@ def _number(part: str) -> str:
 
 
 TIMEOUT: Final = 2.0
-"""Time within which an instrument must answer. [s]"""
+"""Time within which an instrument must answer where its map states none. [s]"""
 
 TERMINATIONS: Final = {"CR": "\r", "LF": "\n", "CRLF": "\r\n"}
 """Ends of a line, by name."""
@@ -82,14 +82,23 @@ class VisaConnection:
         End of a line, both ways.
     baud_rate : int, optional
         Of a serial port.
+    timeout : float, optional
+        In which the instrument answers. [s]
     """
 
     def __init__(
-        self, *, name: str, resource: str, library: str = "@py", termination: str = "\n", baud_rate: int | None = None
+        self,
+        *,
+        name: str,
+        resource: str,
+        library: str = "@py",
+        termination: str = "\n",
+        baud_rate: int | None = None,
+        timeout: float | None = None,
     ) -> None:
         self.name = name
         self._resource, self._library = resource, library
-        self._termination, self._baud_rate = termination, baud_rate
+        self._termination, self._baud_rate, self._timeout = termination, baud_rate, timeout
         self._line: Any = None
         self._is_barred = False
 
@@ -123,13 +132,14 @@ class VisaConnection:
             raise missing_package("visa", context=self.name)
         import pyvisa
 
+        within = round(1e3 * (TIMEOUT if self._timeout is None else self._timeout))
         settings: dict[str, Any] = {} if self._baud_rate is None else {"baud_rate": self._baud_rate}
         try:
             manager = pyvisa.ResourceManager(self._library)
             self._line = manager.open_resource(
                 self._resource,
-                open_timeout=round(1e3 * TIMEOUT),
-                timeout=round(1e3 * TIMEOUT),
+                open_timeout=within,
+                timeout=within,
                 read_termination=self._termination,
                 write_termination=self._termination,
                 **settings,
@@ -218,6 +228,7 @@ class VisaEntry(Table):
 
     resource: Resource
     visa_library: VisaLibrary = "@py"
+    timeout: Annotated[float, SiText("s", 0.1, 60.0)] | None = None
 
     @property
     def where(self) -> str:
@@ -232,7 +243,8 @@ class VisaEntry(Table):
     def line(self, kind: str, **serial: Any) -> VisaConnection:
         """Connection, not open, to an instrument of a kind."""
         name = f"{kind} {self.resource}"
-        return VisaConnection(name=name, resource=self.resource, library=self.visa_library, **serial)
+        own = {"library": self.visa_library, "timeout": self.timeout}
+        return VisaConnection(name=name, resource=self.resource, **own | serial)
 
 
 class VisaLineEntry(VisaEntry):

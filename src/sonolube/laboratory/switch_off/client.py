@@ -87,8 +87,8 @@ class SwitchOffProcess:
         if self._fault:
             raise DeviceLost(self._fault)
 
-    def call(self, output: str, method: str, *arguments: Any) -> None:
-        """Have the process make a call to one of its devices, and wait for the answer.
+    def call(self, output: str, method: str, *arguments: Any) -> Any:
+        """Have the process make a call to one of its devices, and return what that returns.
 
         Raises
         ------
@@ -99,11 +99,10 @@ class SwitchOffProcess:
             if self._link is None:
                 if method in SETTINGS:
                     raise DeviceError(f"{output}: {method}: the switch-off process has not begun")
-                return
+                return None
+        answer = self._ask(output, method, arguments) if not self._fault else None
         if not self._fault:
-            self._ask(output, method, arguments)
-        if not self._fault:
-            return
+            return answer
         if method in SETTINGS:
             raise DeviceLost(self._fault)
         if self._not_off is None:
@@ -111,8 +110,9 @@ class SwitchOffProcess:
         assert self._not_off is not None
         if output in self._not_off:
             raise DeviceError(self._not_off[output])
+        return None
 
-    def _ask(self, output: str, method: str, arguments: tuple[Any, ...]) -> None:
+    def _ask(self, output: str, method: str, arguments: tuple[Any, ...]) -> Any:
         """Send a call and wait for its answer."""
         link, answers = self._link, SimpleQueue[Message]()
         assert link is not None
@@ -134,8 +134,9 @@ class SwitchOffProcess:
             self._open.pop(number, None)
             if answer.get("text"):
                 raise (DeviceLost if answer["kind"] == "lost" else DeviceError)(answer["text"])
-            return
+            return answer.get("value")
         self._lose(f"the switch-off process did not answer to {output}: {method} in {_ANSWERING:g} s")
+        return None
 
     def _start(self, **also: str) -> None:
         """Start the process and wait until it is ready."""
@@ -272,6 +273,10 @@ class _DriveApart(_OutputApart):
     def drive(self, setting: DriveSetting) -> None:
         """Set the output."""
         self._call("drive", asdict(setting))
+
+    def read_back(self) -> str:
+        """Answers of the source on its output; empty where it tells nothing."""
+        return str(self._call("read_back") or "")
 
 
 class _MotorApart(_OutputApart):

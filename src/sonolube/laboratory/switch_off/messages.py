@@ -16,7 +16,7 @@ SILENT: Final = 5.0
 OUTPUTS: Final = ("guard", "drive", "motor")
 """Devices that the switch-off process has, in the order in which they are switched off."""
 
-SETTINGS: Final = ("connect", "drive", "turn", "enable", "renew")
+SETTINGS: Final = ("connect", "drive", "turn", "enable", "renew", "read_back")
 """Calls that may lead to an output that is on; all others lead to one that is off."""
 
 Message = Mapping[str, Any]

@@ -138,15 +138,15 @@ class _Server:
         """Make a call and answer it."""
         number, name, method = message["number"], message["output"], message["method"]
         try:
-            self._make(number, name, method, message["arguments"])
+            value = self._make(number, name, method, message["arguments"])
             if method in ("halt", "disable") and self._awaits_settings(name):
                 self._make(number, name, method, [])  # anew, after a setting that was late
-            self._link.send(number=number)
+            self._link.send(number=number, value=value)
         except BaseException as failure:  # whatever a driver raises
             kind = "lost" if isinstance(failure, DeviceLost) else "error"
             self._link.send(number=number, kind=kind, text=fault_of(self._outputs[name].name, failure))
 
-    def _make(self, number: int, name: str, method: str, arguments: Sequence[Any]) -> None:
+    def _make(self, number: int, name: str, method: str, arguments: Sequence[Any]) -> str | None:
         """Make a call to an output; after the first halt, none that may switch on."""
         device = self._outputs[name]
         with self._lock:
@@ -161,8 +161,11 @@ class _Server:
                 _off_at_once(device)()
             elif method == "drive":
                 device.drive(DriveSetting(**arguments[0]))
+            elif method == "read_back":
+                return str(device.read_back()) if hasattr(device, "read_back") else None
             else:
                 getattr(device, method)(*arguments)
+            return None
         finally:
             with self._lock:
                 del self._calls[number]
