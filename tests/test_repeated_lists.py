@@ -104,7 +104,7 @@ def test_every_entry_of_the_metadata_of_a_protocol_is_a_fact_of_its_run(tmp_path
     given |= {"normal_load": "3 N", "groove_diameter": "28 mm"}
     content = {"title": "a", "source": "b", "limits": {"voltage_maximum": "1 V", "duration_maximum": "1 s"}}
     protocol = protocol_from(content | {"metadata": given, "steps": [{"kind": "wait", "duration": "1 s"}]})
-    stand_in = SimpleNamespace(simulated=False, description={}, channels={}, groove_diameter=0.05)
+    stand_in = SimpleNamespace(switch_off=None, simulated=False, description={}, channels={}, groove_diameter=0.05)
     recorder = begin_record(RunPlan(protocol=protocol, name="a", rig=None), cast(Devices, stand_in), out=tmp_path)
     known = read_run_facts(recorder.folder).facts
     recorder.finish("completed")

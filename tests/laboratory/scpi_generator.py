@@ -111,7 +111,7 @@ class Generator:
     def _told(self, path: tuple[str, ...]) -> str | None:
         if path == ("SYST", "ERR"):
             return self.errors.pop(0) if self.errors else '+0,"No error"'
-        states = {
+        states: dict[tuple[str, ...], str] = {
             ("OUTP",): "1" if self.is_on else "0",
             ("OUTP", "LOAD"): "9.9E+37" if self.load == "INF" else "+5.0000000000000E+01",
             ("VOLT",): f"{self.amplitude:+.13E}",

@@ -9,7 +9,14 @@ from typing import Final
 from sonolube.facts.protocol import Check, Prompt, Protocol, SetPoint, flattened, step_at
 from sonolube.laboratory.block import BLOCK_DURATION
 from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting, Recorder
-from sonolube.laboratory.interlocks import drive_sampling, idle_rate, interlocks_for, set_point_trip
+from sonolube.laboratory.interlocks import (
+    IDLE_RATE,
+    SAMPLES_PER_PERIOD,
+    drive_sampling,
+    idle_rate,
+    interlocks_for,
+    set_point_trip,
+)
 from sonolube.laboratory.own_clocks import OwnClocks
 from sonolube.laboratory.run_plan import (
     SETTLING,
@@ -22,6 +29,7 @@ from sonolube.laboratory.run_plan import (
     rotation_speed,
     speed_checks,
 )
+from sonolube.laboratory.set_and_measured import SELF_TEST_TIME, difference, monitor_of, self_test_setting
 from sonolube.laboratory.standing_rig import StandingRig, off_bounds
 from sonolube.laboratory.states import Event, RunControl, RunEnded, RunState
 from sonolube.laboratory.supervised_run import Advance, Sampling, SupervisedRun
@@ -44,6 +52,7 @@ def run_protocol(
     control: RunControl | None = None,
     advance: Advance | None = None,
     watcher: RunWatcher | None = None,
+    self_test: bool = True,
 ) -> RunState:
     """Run a protocol on devices and record it.
 
@@ -62,6 +71,9 @@ def run_protocol(
         Reports progress.
     watcher : RunWatcher, optional
         Shown set points, blocks and events.
+    self_test : bool
+        Of devices that are not simulated, drive at a tenth of the first voltage for 0.3 s before the first step and
+        compare it with what a channel measures, and do so at every block. It vibrates the specimens.
 
     Returns
     -------
@@ -82,7 +94,7 @@ def run_protocol(
     """
     require_possible(protocol, devices)
     control = control or RunControl()
-    run = _Run(protocol, devices, recorder, operator, control, watcher)
+    run = _Run(protocol, devices, recorder, operator, control, watcher, self_test=self_test and not devices.simulated)
     with undone_at_signal(run.halt), asked_by_signal(control.stop):
         return run.complete(advance)
 
@@ -98,8 +110,11 @@ class _Run(SupervisedRun):
         operator: Operator,
         control: RunControl,
         watcher: RunWatcher | None,
+        *,
+        self_test: bool,
     ) -> None:
         super().__init__(devices, recorder, control, watcher)
+        self._tests_itself = self_test
         self._protocol, self._operator = protocol, operator
         self._points = flattened(protocol)
         self._limits = protocol.limits
@@ -126,15 +141,41 @@ class _Run(SupervisedRun):
 
     def _follow(self, advance: Advance | None) -> None:
         """Reach one set point after the other."""
+        if self._tests_itself:
+            self._test_itself()
         for point, following in pairwise(self._points):
             self._reach(point)
             self._run_until(following.time, advance)
         self._read_back()
 
+    def _test_itself(self) -> None:
+        """Drive at a tenth of the first voltage, where a channel shows that, and compare set and measured."""
+        setting = self_test_setting(next(filter(None, map(drive_setting, self._points)), None))
+        acquisition = self._devices.acquisition
+        if setting is None:
+            return
+        rate = max(SAMPLES_PER_PERIOD * setting.frequency, IDLE_RATE)
+        name = monitor_of(acquisition.channels, sample_rate=rate, frequency=setting.frequency)
+        if not name:
+            return
+        given = acquisition.start([name], sample_rate=rate)
+        self._devices.drive.drive(setting)
+        count = max(1, round(BLOCK_DURATION * given))
+        for _ in range(round(SELF_TEST_TIME / BLOCK_DURATION)):
+            block = acquisition.read(count)
+        self._devices.drive.off()
+        acquisition.stop()
+        told = difference(block, [name], setting)
+        swing = setting.voltage_peak_to_peak
+        self._note("self-test", voltage_peak_to_peak=swing, frequency=setting.frequency, channel=name, reason=told)
+        if told:
+            raise RunEnded(Event.TRIP, f"self-test before the first step: {told}")
+
     def _switch_off(self) -> list[str]:
         """Switch drive and motor off where they were connected, and return what failed; never raises."""
         failures = super()._switch_off()
         self._drive, self._turns = None, 0.0
+        self._sampling.expect(None)
         return failures
 
     def _prepare(self, advance: Advance | None) -> None:
@@ -207,6 +248,7 @@ class _Run(SupervisedRun):
                 self._end_at(set_point_trip(setting, self._protocol.limits))
                 self._devices.drive.drive(setting)
             self._drive = setting
+            self._sampling.expect(setting if self._tests_itself else None)
             frequency = 0.0 if setting is None else setting.frequency
             self._note("drive", step=point.step, voltage_peak_to_peak=point.voltage_peak_to_peak, frequency=frequency)
 

@@ -17,6 +17,7 @@ from sonolube.laboratory.block import BLOCK_DURATION, Block
 from sonolube.laboratory.devices import (
     Acquisition,
     Devices,
+    DriveSetting,
     Recorder,
     connect_devices,
     require_gapless,
@@ -25,6 +26,7 @@ from sonolube.laboratory.devices import (
 from sonolube.laboratory.interlocks import Interlock, first_trip
 from sonolube.laboratory.own_clocks import OwnClocks
 from sonolube.laboratory.run_plan import reserved
+from sonolube.laboratory.set_and_measured import SETTLING, difference
 from sonolube.laboratory.standing_rig import measured_outputs
 from sonolube.laboratory.states import (
     Event,
@@ -79,6 +81,8 @@ class Sampling:
         self._origin = 0.0  # time of the protocol at sample 0
         self._recording = False
         self._latest: Block | None = None
+        self._expected: DriveSetting | None = None
+        self._expected_from = 0.0  # time of the protocol from which it is compared with what is measured
         self.rate = 0.0
         self.sample = 0
         self.time = 0.0
@@ -108,6 +112,10 @@ class Sampling:
         self._recorded = len(own)
         self.rate = self._acquisition.start(self._names, sample_rate=sample_rate)
         self.sample, self._origin, self._latest = 0, self.time, None
+
+    def expect(self, setting: DriveSetting | None) -> None:
+        """Hold what is measured of the drive to a setting, a moment after it; to none where that is None."""
+        self._expected, self._expected_from = setting, self.time + SETTLING
 
     def stop(self) -> None:
         """Stop to sample and to record."""
@@ -196,6 +204,8 @@ class Sampling:
             values = block.values[:, : self._recorded]
             self._recorder.append(Block(first_sample=block.first_sample, sample_rate=self.rate, values=values))
         trip = first_trip(block, self._names, self._locks)
+        if self._expected is not None and self._origin + block.start >= self._expected_from:
+            trip = trip or difference(block, self._names, self._expected)
         told(self._watcher, lambda watcher: watcher.takes(self._names, block, time=self._origin + block.start))
         if not trip:
             self._beside.keep(self._recorder)

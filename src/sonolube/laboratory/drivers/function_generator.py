@@ -181,7 +181,7 @@ class GeneratorEntry(VisaLineEntry, DriveEntry):
         As VISA calls it.
     visa_library : str
     timeout : float
-        In which it answers. [s]
+        In which it answers, in s.
     baud_rate : int or None
         Of a serial port.
     termination : str

@@ -83,7 +83,7 @@ class VisaConnection:
     baud_rate : int, optional
         Of a serial port.
     timeout : float, optional
-        In which the instrument answers. [s]
+        In which the instrument answers, in s.
     """
 
     def __init__(

@@ -11,10 +11,12 @@ import numpy as np
 from sonolube.design.control import Amplifier
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.facts.protocol import PROMPT_DURATIONS, Metadata, Prompt, Protocol, SetPoint, flattened, step_at
+from sonolube.laboratory.devices import DriveSetting
 from sonolube.laboratory.dry_run.record import DryRun, Heating, PlannedPoint, drive_load, heating_over, rubbed_contact
 from sonolube.laboratory.dry_run.report import caveats_of, refusals_of
 from sonolube.laboratory.heating_assumptions import HeatingAssumptions as HeatingAssumptions
 from sonolube.laboratory.run_plan import drive_setting
+from sonolube.laboratory.set_and_measured import SELF_TEST_TIME, self_test_setting
 from sonolube.laboratory.supervision import LATE
 from sonolube.rig import OperatingPoints, Rig, operating_points, thermal_solid
 from sonolube.rig.driven_rig import actuator_capacitance
@@ -75,7 +77,9 @@ def dry_run(
         duration=settings[-1].time,
         prompt_time=sum(PROMPT_DURATIONS[prompt.task] for prompt in prompts),
         heating=heated,
-        assumptions=_assumptions(assumed, rig, prompts),
+        assumptions=_assumptions(
+            assumed, rig, prompts, self_test_setting(next(filter(None, map(drive_setting, settings)), None))
+        ),
     )
     return replace(
         found, refusals=(*notes.refusals, *refusals_of(found, amplifier)), caveats=(*notes.caveats, *caveats_of(found))
@@ -199,10 +203,19 @@ def _material(known: str | None, of_protocol: str, role: str) -> str:
     return name
 
 
-def _assumptions(assumed: HeatingAssumptions, rig: Rig | None, prompts: Sequence[Prompt]) -> dict[str, str]:
+def _assumptions(
+    assumed: HeatingAssumptions, rig: Rig | None, prompts: Sequence[Prompt], tested: DriveSetting | None
+) -> dict[str, str]:
     """Assumptions, by their subject."""
     late = format_si(LATE, "s")
     found = {"supervisor": f"on devices, motor and drive are switched off where a block is late by more than {late}"}
+    if tested is not None:
+        swing, frequency = format_si(tested.voltage_peak_to_peak, "V"), format_si(tested.frequency, "Hz")
+        found["self-test"] = (
+            f"on devices with a channel of the voltage, {swing} peak to peak at {frequency} for"
+            f" {format_si(SELF_TEST_TIME, 's')} before the first step, which vibrates the specimens: set and measured"
+            " are compared, as at every block; it can be left out"
+        )
     if prompts:
         tasks = dict.fromkeys(prompt.task for prompt in prompts)
         found["prompts"] = ", ".join(f"{task} {PROMPT_DURATIONS[task] / 60:g} min" for task in tasks)

@@ -157,6 +157,7 @@ def run_and_record(
     control: RunControl | None = None,
     watcher: RunWatcher | None = None,
     asks: bool = False,
+    self_test: bool = True,
 ) -> RunAnswer:
     """Run a plan on devices with its record below a folder, and say how it went.
 
@@ -176,6 +177,8 @@ def run_and_record(
         Shown set points, blocks and events.
     asks : bool
         Whether the operator, where there is one, answers the prompts of simulated devices too.
+    self_test : bool
+        Whether voltages that were set are compared with those that are measured, before a run and in it.
 
     Returns
     -------
@@ -190,11 +193,18 @@ def run_and_record(
     answers = operator if asks and operator is not None else _answering(plan.protocol, devices, operator)
     control = control or RunControl()
     require_free(devices.resources)
-    recorder = begin_record(plan, devices, out=out)
+    recorder = begin_record(plan, devices, out=out, facts={} if self_test else {"self_test": "left out"})
     told(watcher, lambda each: each.records(recorder.folder))
     with run_stage("running", control) as advance:
         result = run_protocol(
-            plan.protocol, devices, recorder, operator=answers, control=control, advance=advance, watcher=watcher
+            plan.protocol,
+            devices,
+            recorder,
+            operator=answers,
+            control=control,
+            advance=advance,
+            watcher=watcher,
+            self_test=self_test,
         )
         if virtual is not None:
             recorder.store_truth(virtual.truth())
@@ -243,6 +253,9 @@ def run(
     dry_run: Annotated[bool, Parameter("Tell what will happen, and touch nothing.")] = False,
     anyway: Annotated[bool, Parameter("Run although a dry run says that it is impossible.")] = False,
     yes: Annotated[bool, Parameter("Take the prompts to the operator as done.")] = False,
+    no_self_test: Annotated[
+        bool, Parameter("Do not compare voltages that are set and measured, before the first step and at every block.")
+    ] = False,
     tag: Tags = (),
     fact: Annotated[
         Mapping[str, str | float] | None,
@@ -263,7 +276,7 @@ def run(
     path, known = str(file_path(protocol)), optional_rig(rig)
     read = protocol_by_name_or_file(path)
     if dry_run:
-        unused = "seed", "real_time", "anyway", "yes", "tag", "fact", "out"
+        unused = "seed", "real_time", "anyway", "yes", "no_self_test", "tag", "fact", "out"
         refuse_unused(*unused, because=f"with {shown('dry_run')}, which runs nothing")
         return DryRunAnswer(protocol=read, found=dry_runs.dry_run(read, rig=known))
     if not anyway:
@@ -281,6 +294,7 @@ def run(
         control=control,
         watcher=watcher,
         asks=real_time,
+        self_test=not no_self_test,
     )
 
 
