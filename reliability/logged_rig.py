@@ -273,12 +273,12 @@ class LoggedRig:
 
     def start(self) -> "subprocess.Popen[str]":
         """Start the program of the run."""
-        path = os.pathsep.join([str(self.folder), *filter(None, sys.path)])
+        path, own = os.pathsep.join([str(self.folder), *filter(None, sys.path)]), str(self.folder / "state")
         words = ["-m", "sonolube", "lab", "run", "short.toml", "--device", "devices.toml", "--out", "runs", "--json"]
         return subprocess.Popen(
             [sys.executable, *words],
             cwd=self.folder,
-            env=os.environ | {"PYTHONPATH": path, "XDG_STATE_HOME": str(self.folder / "state")},
+            env=os.environ | {"PYTHONPATH": path} | dict.fromkeys(("XDG_STATE_HOME", "SONOLUBE_DEVICE_LOCKS"), own),
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,

@@ -131,6 +131,14 @@ def at_console_close(act: Callable[[str], None]) -> Callable[[], None]:
     return forget
 
 
+def home_folder() -> Path:
+    """Home of this user, by the users of the system rather than by the environment."""
+    if not ON_WINDOWS:
+        with suppress(ImportError, KeyError):
+            return Path(import_module("pwd").getpwuid(os.getuid()).pw_dir)
+    return Path.home()
+
+
 def process_start(process: int) -> str:
     """Time at which a process has started, as the system writes it; empty where there is none."""
     if ON_WINDOWS:

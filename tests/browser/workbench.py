@@ -42,7 +42,7 @@ def served(folder: Path, *arguments: str) -> Iterator[Served]:
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
-        env=os.environ | {"XDG_STATE_HOME": str(folder)},
+        env=os.environ | dict.fromkeys(("XDG_STATE_HOME", "SONOLUBE_DEVICE_LOCKS"), str(folder)),
         cwd=folder,
     )
     assert process.stdout is not None

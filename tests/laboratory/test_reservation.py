@@ -64,6 +64,23 @@ def test_a_process_that_was_killed_keeps_nobody_out(tmp_path: Path) -> None:
     require_free([CARD])
 
 
+def test_a_shell_with_another_folder_of_states_has_the_same_locks(tmp_path: Path, monkeypatch: MonkeyPatch) -> None:
+    with holder(tmp_path) as process:
+        monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "other"))
+        with raises(DeviceInUse, match=f"process {process.pid}"):
+            require_free([CARD])
+        process.communicate("")
+
+
+def test_the_locks_are_in_the_home_of_the_user_whatever_the_environment_says(monkeypatch: MonkeyPatch) -> None:
+    monkeypatch.delenv(reservation.LOCKS)
+    place = reservation._folder(CARD)
+    for name in ("XDG_STATE_HOME", "HOME"):
+        monkeypatch.setenv(name, "/elsewhere")
+    assert reservation._folder(CARD) == place
+    assert place.parts[-5:-1] == (".local", "state", "sonolube", "devices")
+
+
 def test_another_run_of_the_same_process_is_kept_out() -> None:
     with reserved([CARD]), raises(DeviceInUse, match=f"process {os.getpid()}"):
         require_free([CARD])

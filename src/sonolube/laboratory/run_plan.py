@@ -19,9 +19,9 @@ from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting
 from sonolube.laboratory.interlocks import DriveSampling, drive_sampling, interlocks_for, recorded_channels
 from sonolube.laboratory.records import UNRESOLVED, RunRecorder, new_run
 from sonolube.laboratory.supervision import LATE
-from sonolube.operating_system import process_start, remove_file
+from sonolube.operating_system import home_folder, process_start, remove_file
 from sonolube.rig import Rig
-from sonolube.storage.files import is_locked, locked_folder, user_state_folder, write_atomically
+from sonolube.storage.files import is_locked, locked_folder, write_atomically
 from sonolube.storage.user_files import input_text
 from sonolube.text.units import format_si
 from sonolube.vocabulary import unit_of
@@ -284,6 +284,9 @@ def _facts(plan: RunPlan, devices: Devices) -> dict[str, str | float | int | boo
     return facts
 
 
+LOCKS: Final = "SONOLUBE_DEVICE_LOCKS"
+"""Variable of the environment that names another folder for the locks of devices."""
+
 _HOLDER: Final = "holder.json"  # process that has a device
 _LARGEST: Final = 10_000  # bytes of it
 
@@ -331,7 +334,13 @@ def _folder(resource: str) -> Path:
     place = "network" if resource.startswith("tcpip ") else platform.node() or "computer"
     words = re.sub(r"[^a-z0-9]+", "-", f"{place} {resource}".lower()).strip("-")[:80]
     digest = hashlib.sha256(f"{place} {resource}".encode()).hexdigest()[:8]  # of names with the same letters
-    return user_state_folder() / "devices" / f"{words}-{digest}"
+    return _locks() / "devices" / f"{words}-{digest}"
+
+
+def _locks() -> Path:
+    """Folder of the locks of devices: one a user, wherever XDG_STATE_HOME of a shell or service has other states."""
+    own = os.environ.get(LOCKS)
+    return Path(own) if own else home_folder() / ".local" / "state" / "sonolube"
 
 
 def _in_use(resource: str, folder: Path) -> DeviceInUse:

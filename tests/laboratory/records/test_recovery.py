@@ -11,7 +11,8 @@ from tests.laboratory.records.recorded import begun, block_of, contents, recorde
 from tests.laboratory.records.test_recorder import judge
 
 from sonolube.errors import InvalidInput
-from sonolube.laboratory.records import read_run, recover_run
+from sonolube.laboratory.records import last_verdict, read_run, recover_run
+from sonolube.laboratory.verdict import Outputs, Verdict
 
 WRITER = """
 import sys
@@ -119,3 +120,33 @@ def test_a_run_at_work_is_not_recovered(tmp_path: Path) -> None:
     with pytest.raises(InvalidInput, match="another run is at work"):
         recover_run(recorder.folder)
     recorder.finish("completed")
+
+
+@pytest.mark.parametrize("content", ["", "{", "[1]", '{"format": 1, "title": 3}', "\x00\xff"])
+@pytest.mark.parametrize("has_documents", [True, False])
+def test_damaged_facts_are_written_from_the_documents_or_the_protocol(
+    content: str, has_documents: bool, tmp_path: Path
+) -> None:
+    folder = recorded(tmp_path, rig="tribometer")
+    whole = read_run(folder)
+    (folder / "run.json").write_text(content, encoding="latin-1")
+    if not has_documents:
+        (folder / "documents.jsonl").write_text("damaged\n")
+    with pytest.raises(InvalidInput, match=r"run\.json: is damaged; `sonolube lab recover` writes it"):
+        read_run(folder)
+    assert recover_run(folder).done[0].startswith("run.json written from")
+    again = read_run(folder)
+    assert again.summary.title == (whole.summary.title if has_documents else "test")  # of the protocol
+    assert again.summary.samples == whole.summary.samples
+    assert again.facts == (whole.facts if has_documents else {})
+    assert recover_run(folder).done == ()
+
+
+def test_a_verdict_of_the_switch_off_process_closes_the_record_of_a_killed_run(tmp_path: Path) -> None:
+    folder = unfinished(tmp_path)
+    assert last_verdict(folder) == ""
+    recover_run(folder, outputs=Verdict(Outputs.CUT_THE_POWER, "motor: does not answer"))
+    assert last_verdict(folder) == "cut the power: motor: does not answer"
+    assert read_run(folder).notes[-1].kind == "not off"
+    recover_run(folder, outputs=Verdict(Outputs.MEASURED_OFF))
+    assert last_verdict(folder) == "cut the power: motor: does not answer"  # the first one stays

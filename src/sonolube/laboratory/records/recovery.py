@@ -199,8 +199,6 @@ def _known(folder: Path, done: list[str]) -> RunFacts:
         return read_run_facts(folder)
     except InvalidInput:
         starts = read_documents(folder).of("start")
-        if (folder / RUN).exists() and not starts:
-            raise
         known = rebuilt_run_facts(folder, starts[0] if starts else None)
     done.append(
         f"{RUN} written from " + ("the first document" if starts else "the protocol and the name of the folder")

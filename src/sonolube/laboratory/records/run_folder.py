@@ -167,7 +167,7 @@ def read_run_facts(folder: Path) -> RunFacts:
     except OSError:
         raise InvalidInput(f"{folder}: holds no run: it has no file {RUN}") from None
     except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError):
-        raise InvalidInput(f"{path}: is damaged; restore it, or remove the folder") from None
+        raise InvalidInput(f"{path}: is damaged; `sonolube lab recover` writes it from the other files") from None
 
 
 def rebuilt_run_facts(folder: Path, start: Mapping[str, Any] | None) -> RunFacts:
