@@ -101,7 +101,7 @@ def test_every_entry_of_the_metadata_of_a_protocol_is_a_fact_of_its_run(tmp_path
         name: 3 if int in get_args(field.annotation) else f"{name} of the test"
         for name, field in Metadata.model_fields.items()
     }
-    given |= {"normal_load": "3 N", "groove_diameter": "28 mm"}
+    given |= {"normal_load": "3 N", "groove_diameter": "28 mm", "thermocouple": "contact"}
     content = {"title": "a", "source": "b", "limits": {"voltage_maximum": "1 V", "duration_maximum": "1 s"}}
     protocol = protocol_from(content | {"metadata": given, "steps": [{"kind": "wait", "duration": "1 s"}]})
     stand_in = SimpleNamespace(switch_off=None, simulated=False, description={}, channels={}, groove_diameter=0.05)

@@ -152,3 +152,27 @@ def test_the_rise_of_a_stage_is_the_mean_over_the_interpolated_reference() -> No
         temperature_rise_by_stage(
             time=TIME, temperature=TIME, reference_time=TIME, reference_temperature=TIME, stages=[0.0, 3.0, 3.05]
         )
+
+
+def test_a_pulse_of_heat_is_no_step_response() -> None:
+    time = np.linspace(0.0, 50.0, 501)
+    pulse = 300.0 + 4.0 * np.sin(np.pi * time / 50.0)  # rises and falls
+    with raises(InvalidInput, match=r"no determined step response: its exponentials of .* cancel each other"):
+        fit_temperature_response(time=time, temperature=pulse, exponentials=2)
+
+
+def test_a_temperature_that_stays_within_its_noise_has_no_response() -> None:
+    rng = np.random.default_rng(5)
+    time = np.linspace(0.0, 50.0, 501)
+    rest = 294.15 + 0.05 * rng.standard_normal(501)
+    with raises(InvalidInput, match="is not beyond its noise"):
+        fit_temperature_response(time=time, temperature=rest, exponentials=1)
+
+
+def test_two_exponentials_that_the_record_does_not_tell_apart_become_one() -> None:
+    rng = np.random.default_rng(6)
+    time = np.linspace(0.0, 300.0, 1501)
+    settling = 20.0 * (1 - np.exp(-time / 60.0)) + 0.01 * rng.standard_normal(1501)
+    found = fit_temperature_response(time=time, temperature=settling)
+    assert len(found.time_constants) == 1
+    assert found.time_constants[0].value == approx(60.0, rel=0.01)

@@ -16,6 +16,7 @@ from sonolube.measurement.statistics.log_parameter_fit import ConfidenceInterval
 from sonolube.measurement.time_series import require_time_series
 
 _INITIAL_TIME_CONSTANTS = 7  # on a logarithmic grid over the duration
+_MOST_CANCELLED = 5.0  # shares of exponentials over the change that they make together
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -88,7 +89,8 @@ def fit_temperature_response(
     Raises
     ------
     InvalidInput
-        If there are fewer than 8 values, they do not vary, or `exponentials` is neither 1 nor 2.
+        If there are fewer than 8 values, they do not vary, `exponentials` is neither 1 nor 2, or the record does not
+        determine the exponentials: shares that cancel each other, or a change that is not beyond its noise.
 
     Notes
     -----
@@ -118,8 +120,14 @@ def fit_temperature_response(
     if t.size < 8 or np.ptp(value) == 0:
         raise InvalidInput(f"a settling temperature needs 8 values that vary, got {t.size}")
     fits = [_log_time_constants(t, value, count) for count in ((1, 2) if exponentials is None else (exponentials,))]
-    logarithms = min(fits, key=lambda fit: _information_criterion(t, value, fit))
-    return _response(t, value, logarithms, confidence_level)
+    fits.sort(key=partial(_information_criterion, t, value))
+    found = [_response(t, value, logarithms, confidence_level) for logarithms in fits]
+    range_of_values = float(np.ptp(value))
+    reasons = [_undetermined(response, range_of_values) for response in found]
+    known_ones = [response for response, reason in zip(found, reasons, strict=True) if not reason]
+    if not known_ones:
+        raise InvalidInput(f"temperature is no determined step response: {reasons[0]}; choose the part after one step")
+    return known_ones[0]
 
 
 def temperature_rise_by_stage(
@@ -250,6 +258,18 @@ def _response(t: Floats, value: Floats, logarithms: Floats, confidence_level: fl
         confidence_level=confidence_level,
         caveats=_caveats(float(taus[-1]), float(t[-1])),
     )
+
+
+def _undetermined(found: TemperatureResponse, values: float) -> str:
+    """Why a record with a range of values, in K, does not determine the exponentials of a fit; empty where it does."""
+    shares = sum(abs(each.value) for each in found.temperature_changes)
+    change = found.temperature_change
+    if shares > _MOST_CANCELLED * max(values, abs(change.value)):
+        times = " and ".join(f"{each.value:.3g} s" for each in found.time_constants)
+        return f"its exponentials of {times} cancel each other, {shares:.3g} K for a range of {values:.3g} K"
+    if change.lower <= 0 <= change.upper and len(found.temperature_changes) == 1:
+        return f"its change of {change.value:.3g} K is not beyond its noise, {change.lower:.3g} to {change.upper:.3g} K"
+    return ""
 
 
 def _caveats(longest: float, duration: float) -> tuple[str, ...]:

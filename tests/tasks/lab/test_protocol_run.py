@@ -15,6 +15,7 @@ from sonolube.errors import InvalidInput
 from sonolube.example_files import example_file
 from sonolube.facts.protocol import protocol_by_name_or_file, protocol_names
 from sonolube.laboratory import RunControl
+from sonolube.laboratory.virtual_tribometer import Disturbances
 from sonolube.report.results.ended_run import SIMULATED
 from sonolube.rig import read_rig
 from sonolube.tasks.lab import friction_hold, protocol_run
@@ -92,15 +93,15 @@ def test_a_virtual_rig_is_at_the_load_and_on_the_groove_of_the_protocol(monkeypa
 
     monkeypatch.setattr(protocol_run, "virtual_tribometer", tribometer)
     rig = read_rig(TRIBOMETER)
-    metadata = SimpleNamespace(normal_load=None, groove_diameter=None)
+    metadata = SimpleNamespace(normal_load=None, groove_diameter=None, thermocouple="actuator")
     plan: Any = SimpleNamespace(rig=rig, seed=4, protocol=SimpleNamespace(metadata=metadata))
     protocol_run._virtual_rig(plan)
-    metadata.normal_load, metadata.groove_diameter = 7.0, 0.05
+    metadata.normal_load, metadata.groove_diameter, metadata.thermocouple = 7.0, 0.05, "contact"
     protocol_run._virtual_rig(plan, real_time=True)
-    usual = names_of(protocol_run).GROOVE_DIAMETER
+    usual = {"groove_diameter": names_of(protocol_run).GROOVE_DIAMETER}
     assert made == [
-        (approx(3.0), {"seed": 4, "real_time": False, "groove_diameter": usual}),
-        (7.0, {"seed": 4, "real_time": True, "groove_diameter": 0.05}),
+        (approx(3.0), usual | {"seed": 4, "real_time": False, "disturbances": Disturbances(contact_share=0.0)}),
+        (7.0, {"seed": 4, "real_time": True, "groove_diameter": 0.05, "disturbances": Disturbances(contact_share=1.0)}),
     ]
     plan.rig = None
     with raises(InvalidInput, match=r"^device_map virtual needs rig, whose friction it takes$"):

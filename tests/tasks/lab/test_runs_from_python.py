@@ -4,7 +4,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+import xarray as xr
 from pytest import MonkeyPatch, approx, raises
 from tests.cli.conftest import Program
 from tests.laboratory import rig_stand_ins
@@ -234,3 +236,49 @@ def test_entries_that_were_replaced_stand_in_the_record_of_a_virtual_run(folder:
 def test_a_refusal_names_the_argument_of_python(call: Callable[[], object], line: str) -> None:
     with raises((InvalidInput, UnknownName), match=line):
         call()
+
+
+WARM = """title = "warm"
+source = "none"
+
+[limits]
+voltage_maximum = "30 V"
+duration_maximum = "9 s"
+
+[metadata]
+thermocouple = "{place}"
+
+[[steps]]
+kind = "acquire"
+channels = ["friction_force", "temperature"]
+sample_rate = "100 Hz"
+duration = "5 s"
+
+[[steps]]
+kind = "wait"
+duration = "1 s"
+
+[[steps]]
+kind = "motor_speed"
+sliding_speed = "220 mm/s"
+
+[[steps]]
+kind = "wait"
+duration = "4 s"
+"""
+
+
+def test_a_virtual_thermocouple_is_where_its_protocol_says(tmp_path: Path) -> None:
+    rig = RIG.with_name("coated_temperature.toml")
+    rises: dict[str, float] = {}
+    for place in ("actuator", "contact"):
+        text = WARM.format(place=place).encode()
+        found = lab.run(NamedBytes("warm.toml", text), rig=rig, out=tmp_path / place)
+        temperature = found.run.dataset()["temperature"].to_numpy()
+        rises[place] = float(temperature[-100:].mean() - temperature[:90].mean())
+        assert found.run.facts["thermocouple"] == place
+    with xr.open_dataset(tmp_path / "contact" / found.run.folder.name / "truth" / "truth.nc") as truth:
+        flash = float(np.nanmax(truth["flash_temperature_rise"].to_numpy()))
+    assert rises["actuator"] == approx(0.0, abs=0.05)  # K; nothing warms the actuator
+    assert flash > 2.0
+    assert rises["contact"] == approx(flash, abs=0.5)  # and the pin, which warms slowly

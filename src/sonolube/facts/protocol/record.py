@@ -134,6 +134,8 @@ class Metadata(Table):
         Relative humidity of the air, such as 45 %.
     calibrated : str
         Date of the latest calibration of the sensors, such as 2026-03-01.
+    thermocouple : str
+        Where the channel of the temperature measures: actuator or contact; empty where that is not said.
     run : int or None
         Row of the table of runs.
     block : int or None
@@ -148,6 +150,7 @@ class Metadata(Table):
     operator: str = Field(default="", max_length=_TEXT)
     humidity: str = Field(default="", max_length=_TEXT)
     calibrated: str = Field(default="", max_length=_TEXT)
+    thermocouple: Literal["", "actuator", "contact"] = ""
     run: int | None = Field(default=None, ge=1)
     block: int | None = Field(default=None, ge=1)
 

@@ -19,7 +19,7 @@ from sonolube.laboratory.records import Run, export_run, read_run
 from sonolube.laboratory.run_plan import RunPlan, begin_record, require_free
 from sonolube.laboratory.runner import Operator
 from sonolube.laboratory.switch_off import ready_devices
-from sonolube.laboratory.virtual_tribometer import GROOVE_DIAMETER, VirtualTribometer, virtual_tribometer
+from sonolube.laboratory.virtual_tribometer import GROOVE_DIAMETER, Disturbances, VirtualTribometer, virtual_tribometer
 from sonolube.laboratory.watching import told
 from sonolube.report import Drawing
 from sonolube.report.results import ended_run as results
@@ -351,4 +351,5 @@ def _virtual_rig(plan: RunPlan, *, real_time: bool = False) -> VirtualTribometer
     metadata = plan.protocol.metadata
     rig = plan.rig if metadata.normal_load is None else replace(plan.rig, normal_load=metadata.normal_load)
     diameter = metadata.groove_diameter or GROOVE_DIAMETER
-    return virtual_tribometer(rig, seed=plan.seed, real_time=real_time, groove_diameter=diameter)
+    sizes = Disturbances(contact_share=float(metadata.thermocouple == "contact"))
+    return virtual_tribometer(rig, seed=plan.seed, real_time=real_time, disturbances=sizes, groove_diameter=diameter)
