@@ -20,6 +20,7 @@ from sonolube.laboratory.records import Run, read_run, run_folders
 from sonolube.rig import read_rig
 from sonolube.tasks import lab
 from sonolube.tasks.files import NamedBytes
+from sonolube.tasks.lab.protocol_run import RunAnswer
 from sonolube.tasks.progress import TaskCancelled
 
 RIG = Path(__file__).parents[3] / "examples" / "rigs" / "power_map.toml"
@@ -274,6 +275,7 @@ def test_a_virtual_thermocouple_is_where_its_protocol_says(tmp_path: Path) -> No
     for place in ("actuator", "contact"):
         text = WARM.format(place=place).encode()
         found = lab.run(NamedBytes("warm.toml", text), rig=rig, out=tmp_path / place)
+        assert isinstance(found, RunAnswer)
         temperature = found.run.dataset()["temperature"].to_numpy()
         rises[place] = float(temperature[-100:].mean() - temperature[:90].mean())
         assert found.run.facts["thermocouple"] == place
