@@ -272,6 +272,7 @@ duration = "4 s"
 def test_a_virtual_thermocouple_is_where_its_protocol_says(tmp_path: Path) -> None:
     rig = RIG.with_name("coated_temperature.toml")
     rises: dict[str, float] = {}
+    folders: dict[str, Path] = {}
     for place in ("actuator", "contact"):
         text = WARM.format(place=place).encode()
         found = lab.run(NamedBytes("warm.toml", text), rig=rig, out=tmp_path / place)
@@ -279,7 +280,8 @@ def test_a_virtual_thermocouple_is_where_its_protocol_says(tmp_path: Path) -> No
         temperature = found.run.dataset()["temperature"].to_numpy()
         rises[place] = float(temperature[-100:].mean() - temperature[:90].mean())
         assert found.run.facts["thermocouple"] == place
-    with xr.open_dataset(tmp_path / "contact" / found.run.folder.name / "truth" / "truth.nc") as truth:
+        folders[place] = found.run.folder
+    with xr.open_dataset(folders["contact"] / "truth" / "truth.nc") as truth:
         flash = float(np.nanmax(truth["flash_temperature_rise"].to_numpy()))
     assert rises["actuator"] == approx(0.0, abs=0.05)  # K; nothing warms the actuator
     assert flash > 2.0
