@@ -274,7 +274,7 @@ def test_a_killed_run_of_a_map_is_switched_off_and_told_by_its_switch_off_proces
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(packages), os.environ.get("PYTHONPATH", "")]))
     with laboratory(tmp_path, device_map=written(tmp_path, MAP)) as lab:
         assert lab.post("/api/lab/hold", {"holder": HOLDER})[0] == 200
-        run = lab.start(PROTOCOL.replace('"0.3 s"', '"1.9 s"', 1))
+        run = lab.start(PROTOCOL.replace('"0.3 s"', '"50 s"').replace('"2 s"', '"60 s"'))
         log = packages / "log.txt"
         until(lambda: log.exists() and "drive 20 V 22000 Hz" in log.read_text())
         os.kill(run["process"], signal.SIGKILL)

@@ -205,14 +205,14 @@ def test_a_process_that_cannot_make_the_devices_connects_nothing(tmp_path: Path)
 def test_where_the_program_of_a_run_dies_or_stops_its_switch_off_process_has_the_last_word(
     number: signal.Signals, what: str, tmp_path: Path
 ) -> None:
-    rig = LoggedRig(tmp_path / "rig", duration=8)
+    rig = LoggedRig(tmp_path / "rig", duration=90, is_patient=True)
     process = rig.start()
     rig.wait_until_on()
     os.kill(process.pid, number)
     ended = rig.ended(process)
     assert ended.is_off
     assert (ended.code, ended.output) == (-signal.SIGKILL, "")
-    told, record = ended.error.splitlines()
+    *_, told, record = ended.error.splitlines()  # behind lines of progress
     assert told.startswith(f"sonolube: the program of the run, process {process.pid}, {what}")
     assert told.endswith(f"; motor and drive: {OWN_WORD}")
     assert record.startswith("sonolube: the record is closed: ")
@@ -221,7 +221,9 @@ def test_where_the_program_of_a_run_dies_or_stops_its_switch_off_process_has_the
 
 @needs_signals
 def test_a_run_whose_inputs_keep_the_interpreter_is_ended_and_switched_off(tmp_path: Path) -> None:
-    ended = LoggedRig(tmp_path / "rig", duration=8, where="inputs.read", call=3, kind="held 1000").run()
+    ended = LoggedRig(
+        tmp_path / "rig", duration=90, is_patient=True, where="inputs.read", call=3, kind="held 1000"
+    ).run()
     assert (ended.is_off, ended.record) == (True, OWN_WORD)
     assert "has given no sign of life for 5 s, and was ended; motor and drive: confirmed off" in ended.error
 
