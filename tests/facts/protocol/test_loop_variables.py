@@ -1,12 +1,15 @@
 """Variables of a repeat: the steps written out by hand, conditions of prompts, and what is refused."""
 
+import re
 import tomllib
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
 from sonolube.errors import InvalidInput
 from sonolube.facts.protocol import (
+    Prompt,
     Protocol,
     flattened,
     protocol_at,
@@ -124,3 +127,5 @@ def test_the_protocol_of_the_page_on_writing_one_has_its_settings() -> None:
     }
     assert len(settings) == 2 * 3 * 4
     assert protocol.metadata.operator == "Ann"
+    tasks = re.findall(r"`(\w+)`", page.partition("The `task` of a prompt is")[2].partition(".")[0])
+    assert tuple(tasks) == get_args(Prompt.model_fields["task"].annotation)

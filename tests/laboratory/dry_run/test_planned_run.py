@@ -241,3 +241,20 @@ def test_a_heat_capacity_conductance_or_temperature_of_zero_is_refused(changed: 
     with raises(InvalidInput, match="loss_factor must not be negative"):
         replace(ASSUMED, loss_factor=-0.1)
     assert replace(ASSUMED, loss_factor=0.0).loss_factor == 0.0
+
+
+def test_the_loads_that_prompts_state_are_those_of_what_follows(power_map: Rig) -> None:
+    def load(text: str) -> dict[str, Any]:
+        return {"kind": "prompt", "task": "load", "text": "Hang it.", "normal_load": text}
+
+    steps = [load("3 N"), SLIDE, wait("1 s"), load("6 N"), wait("1 s"), DRIVE, wait("1 s"), load("0 N"), wait("1 s")]
+    found = dry_run(protocol(*steps), rig=power_map)
+    forces = {point.setting.step: point.friction_force for point in found.points}
+    coefficient = power_map.friction_coefficient
+    assert [forces["3"], forces["5"], forces["9"]] == approx([3 * coefficient, 6 * coefficient, 0.0])
+    alone = operating_points(
+        power_map, normal_load=6.0, voltage_peak_to_peak=20.0, voltage_offset=10.0, frequency=22e3, sliding_speed=0.05
+    )
+    assert forces["7"] == approx(float(alone.friction_force))
+    assert not [each for each in found.caveats if "states no load" in each]
+    assert [each for each in dry_run(protocol(SLIDE, wait("1 s")), rig=power_map).caveats if "states no load" in each]

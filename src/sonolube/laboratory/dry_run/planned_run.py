@@ -117,47 +117,56 @@ def _with_vibration(
     points: Sequence[PlannedPoint], rig: Rig, metadata: Metadata, notes: _Notes
 ) -> tuple[PlannedPoint, ...]:
     """Points with amplitude and friction force of the rig."""
-    load = metadata.normal_load or rig.normal_load
-    if metadata.normal_load is None:
-        notes.caveats.append(f"the protocol states no load; taken is the rig's, {format_si(load, 'N')}")
+    usual = metadata.normal_load or rig.normal_load
+    loads = [usual if point.setting.normal_load is None else point.setting.normal_load for point in points]
+    is_used = [bool(point.sliding_speed) or point.setting.frequency is not None for point in points]
+    stated = [metadata.normal_load is not None or point.setting.normal_load is not None for point in points]
+    if not all(is_stated for is_stated, used in zip(stated, is_used, strict=True) if used):
+        notes.caveats.append(f"the protocol states no load; taken is the rig's, {format_si(usual, 'N')}")
     if any(point.sliding_speed is None for point in points):
         notes.caveats.append("metadata.groove_diameter is missing: speeds of the disc are no sliding speeds, no heat")
-    intrinsic = rig.friction_coefficient * load
     still = [
         replace(
             point,
             vibration_amplitude=0.0 if point.setting.frequency is None else None,
-            friction_force=intrinsic if point.sliding_speed else 0.0,
+            friction_force=rig.friction_coefficient * load if point.sliding_speed else 0.0,
         )
-        for point in points
+        for point, load in zip(points, loads, strict=True)
     ]
     driven = [index for index, point in enumerate(points) if point.setting.frequency is not None]
     if not driven:
         return tuple(still)
     try:
-        found, rows = _vibrated([points[index] for index in driven], rig, load)
+        found, rows = _vibrated([points[index] for index in driven], rig, [loads[index] or usual for index in driven])
     except SonolubeError as refusal:
         notes.caveats.append(f"amplitude and friction under vibration are left out: {refusal}")
         return tuple(still)
     for index, row in zip(driven, rows, strict=True):
-        still[index] = _vibrating(still[index], found, int(row), notes)
+        still[index] = _vibrating(still[index], found, int(row), notes, is_lifted=loads[index] == 0)
     notes.caveats.append(f"amplitude {found.amplitude_origin}; friction by {rig.friction_model.name}")
     return tuple(still)
 
 
-def _vibrated(points: Sequence[PlannedPoint], rig: Rig, load: float) -> tuple[OperatingPoints, Sequence[int]]:
-    """Operating points of the distinct settings, and that of each point."""
+def _vibrated(
+    points: Sequence[PlannedPoint], rig: Rig, loads: Sequence[float]
+) -> tuple[OperatingPoints, Sequence[int]]:
+    """Operating points of the distinct settings, and that of each point, by its load in N."""
     at_rest = rig.sliding_speed  # the amplitude is the same, and friction is not asked for
     names = ("voltage_peak_to_peak", "voltage_offset", "frequency")
-    settings = [(*(getattr(each.setting, name) for name in names), each.sliding_speed or at_rest) for each in points]
+    settings = [
+        (*(getattr(each.setting, name) for name in names), each.sliding_speed or at_rest, load)
+        for each, load in zip(points, loads, strict=True)
+    ]
     distinct, rows = np.unique(np.array(settings, dtype=np.float64), axis=0, return_inverse=True)
-    columns = dict(zip((*names, "sliding_speed"), distinct.T, strict=True))
-    found = operating_points(rig, normal_load=load, **columns)
+    columns = dict(zip((*names, "sliding_speed", "normal_load"), distinct.T, strict=True))
+    found = operating_points(rig, **columns)
     return found, rows.ravel().tolist()
 
 
-def _vibrating(point: PlannedPoint, found: OperatingPoints, row: int, notes: _Notes) -> PlannedPoint:
-    """Point with amplitude and friction under vibration, and what its status says."""
+def _vibrating(
+    point: PlannedPoint, found: OperatingPoints, row: int, notes: _Notes, *, is_lifted: bool
+) -> PlannedPoint:
+    """Point with amplitude and friction under vibration, and what its status says; a lifted pin has no friction."""
     amplitude, force = float(found.vibration_amplitude[row]), float(found.friction_force[row])
     status, moving = str(found.status[row]), bool(point.sliding_speed)
     if status == "refused" or (moving and isnan(force)):
@@ -168,7 +177,7 @@ def _vibrating(point: PlannedPoint, found: OperatingPoints, row: int, notes: _No
     return replace(
         point,
         vibration_amplitude=None if isnan(amplitude) else amplitude,
-        friction_force=force if moving and not isnan(force) else point.friction_force,
+        friction_force=force if moving and not isnan(force) and not is_lifted else point.friction_force,
     )
 
 
