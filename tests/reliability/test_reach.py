@@ -1,0 +1,50 @@
+"""The map from lines to tests: made anew, or with tests that join it."""
+
+from pathlib import Path
+
+import pytest
+from coverage import CoverageData
+from pytest import MonkeyPatch, approx
+from reliability import reach
+
+
+@pytest.fixture
+def source(tmp_path: Path, monkeypatch: MonkeyPatch) -> Path:
+    monkeypatch.setattr(reach, "MAP", tmp_path / "reach.sqlite")
+    monkeypatch.setattr(reach, "SOURCE", tmp_path / "package")
+    return tmp_path / "package"
+
+
+def measured(tmp_path: Path, lines: dict[str, dict[str, list[int]]]) -> CoverageData:
+    """Lines of files by the test that reaches them."""
+    data = CoverageData(basename=str(tmp_path / f"data-{len(list(tmp_path.iterdir()))}"))
+    for test, files in lines.items():
+        data.set_context(test)
+        data.add_lines({str(tmp_path / "package" / file): found for file, found in files.items()})
+    return data
+
+
+def test_tests_that_are_added_stand_beside_the_others_and_in_place_of_what_they_reached(
+    source: Path, tmp_path: Path
+) -> None:
+    first = measured(tmp_path, {"a": {"rig.py": [1, 2]}, "b": {"rig.py": [2]}})
+    reach._write(first, {"a": 2.0, "b": 1.0})
+    later = measured(tmp_path, {"a": {"rig.py": [3]}, "c": {"rig.py": [2], "wear.py": [5]}, "d": {"rig.py": [2]}})
+    reach._write(later, {"a": 0.5, "c": 0.25}, add=True)
+    assert reach.reaching("rig.py", 2) == [("c", approx(0.25)), ("b", approx(1.0))]
+    assert reach.reaching("rig.py", 3) == [("a", approx(0.5))]
+    assert reach.reaching("rig.py", 1) == [("c", approx(0.25)), ("a", approx(0.5)), ("b", approx(1.0))]
+    assert reach.reaching("wear.py", 5) == [("c", approx(0.25))]
+
+
+def test_a_map_that_is_made_anew_has_nothing_of_the_former(source: Path, tmp_path: Path) -> None:
+    reach._write(measured(tmp_path, {"a": {"rig.py": [1]}}), {"a": 2.0})
+    reach._write(measured(tmp_path, {"b": {"wear.py": [1]}}), {"b": 1.0})
+    assert reach.reaching("rig.py", 1) == []
+    assert reach.reaching("wear.py", 1) == [("b", approx(1.0))]
+
+
+def test_tests_are_picked_in_their_order_up_to_a_minute_and_one_at_least() -> None:
+    assert reach.picked([("a", 30.0), ("b", 30.0), ("c", 0.1)]) == ["a", "b"]
+    assert reach.picked([("long", 61.0), ("b", 1.0)]) == ["long"]
+    assert reach.picked([]) == []
