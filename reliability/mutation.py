@@ -173,7 +173,9 @@ class _Finder(ast.NodeVisitor):
             self._add(node.func.lineno, node.func.end_col_offset - len(name), name, _NAMES[name])
         self._dropped(node, name)
         self._swapped(node)
-        self.generic_visit(node)
+        for child in ast.iter_child_nodes(node):
+            if name != "zip" or not isinstance(child, ast.keyword):  # strict= changes nothing among equal lengths
+                self.visit(child)
 
     def visit_keyword(self, node: ast.keyword) -> None:
         if not str(node.arg).endswith(_LOOKS):
