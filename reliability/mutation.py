@@ -453,7 +453,7 @@ def _failed(tests: Sequence[str], environment: dict[str, str], limit: float) -> 
 
 
 def _there(tests: Sequence[str], errors: str) -> list[str]:
-    """Tests that pytest has not called missing: one that was renamed or left out must not keep the others from running."""
+    """Tests that pytest has not called missing: one that was renamed must not keep the others from running."""
     missing = [line for line in errors.splitlines() if "not found: " in line]
     return [test for test in tests if not any(line.endswith(test) for line in missing)]
 

@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 from pytest import MonkeyPatch
-from reliability import mutation
 from reliability.mutation import Mutant, mutants_of
+
+from reliability import mutation
 
 TEXT = """\
 def pairs(first, second):

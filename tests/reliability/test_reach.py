@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 from coverage import CoverageData
 from pytest import MonkeyPatch, approx
+
 from reliability import reach
 
 
@@ -30,18 +31,19 @@ def test_tests_that_are_added_stand_beside_the_others_and_in_place_of_what_they_
     first = measured(tmp_path, {"a": {"rig.py": [1, 2]}, "b": {"rig.py": [2]}})
     reach._write(first, {"a": 2.0, "b": 1.0})
     later = measured(tmp_path, {"a": {"rig.py": [3]}, "c": {"rig.py": [2], "wear.py": [5]}, "d": {"rig.py": [2]}})
-    reach._write(later, {"a": 0.5, "c": 0.25}, add=True)
-    assert reach.reaching("rig.py", 2) == [("c", approx(0.25)), ("b", approx(1.0))]
-    assert reach.reaching("rig.py", 3) == [("a", approx(0.5))]
-    assert reach.reaching("rig.py", 1) == [("c", approx(0.25)), ("a", approx(0.5)), ("b", approx(1.0))]
-    assert reach.reaching("wear.py", 5) == [("c", approx(0.25))]
+    reach._write(later, {"a": 0.5, "c": 0.25, "d": 3.0}, add=True)
+    assert dict(reach.reaching("rig.py", 2)) == approx({"c": 0.25, "d": 3.0, "b": 1.0})
+    assert [name for name, _ in reach.reaching("rig.py", 2)] == ["c", "b", "d"]
+    assert dict(reach.reaching("rig.py", 3)) == approx({"a": 0.5})
+    assert [name for name, _ in reach.reaching("rig.py", 1)] == ["c", "a", "b", "d"]  # of the whole file
+    assert dict(reach.reaching("wear.py", 5)) == approx({"c": 0.25})
 
 
 def test_a_map_that_is_made_anew_has_nothing_of_the_former(source: Path, tmp_path: Path) -> None:
     reach._write(measured(tmp_path, {"a": {"rig.py": [1]}}), {"a": 2.0})
     reach._write(measured(tmp_path, {"b": {"wear.py": [1]}}), {"b": 1.0})
     assert reach.reaching("rig.py", 1) == []
-    assert reach.reaching("wear.py", 1) == [("b", approx(1.0))]
+    assert dict(reach.reaching("wear.py", 1)) == approx({"b": 1.0})
 
 
 def test_tests_are_picked_in_their_order_up_to_a_minute_and_one_at_least() -> None:
