@@ -50,3 +50,13 @@ def test_tests_are_picked_in_their_order_up_to_a_minute_and_one_at_least() -> No
     assert reach.picked([("a", 30.0), ("b", 30.0), ("c", 0.1)]) == ["a", "b"]
     assert reach.picked([("long", 61.0), ("b", 1.0)]) == ["long"]
     assert reach.picked([]) == []
+
+
+def test_the_others_of_a_file_follow_the_tests_that_reach_a_line(source: Path, tmp_path: Path) -> None:
+    names = ("a.py::slow", "a.py::quick", "a.py::first", "b.py::other")
+    reach._write(
+        measured(tmp_path, {"a.py::first": {"rig.py": [1]}}), dict(zip(names, (3.0, 1.0, 2.0, 0.5), strict=True))
+    )
+    followed = reach.with_their_files(reach.reaching("rig.py", 1))
+    assert [name for name, _ in followed] == ["a.py::first", "a.py::quick", "a.py::slow"]
+    assert reach.with_their_files([]) == []
