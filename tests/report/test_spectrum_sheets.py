@@ -112,14 +112,16 @@ def test_what_was_found_comes_first_with_intervals_of_estimates_and_uncertaintie
     interval = told["normal_stiffness"].interval
     assert interval is not None
     assert interval == approx((2e6 * np.exp(-0.196), 2e6 * np.exp(0.196)), rel=1e-3)
-    assert (told["stiffness_ratio"].value, told["stiffness_ratio"].interval) == (approx(0.5), None)
+    assert told["stiffness_ratio"].value == approx(0.5)
+    assert told["stiffness_ratio"].interval is None
     assert told["free_frequency"].uncertainty == approx(3.0)
     assert told["pressed_frequency"].uncertainty == approx(4.0)
     assert (told["frequency_shift"].value, told["frequency_shift"].uncertainty) == approx((60.0, 5.0))
     floating = replace(STIFFNESS, free_frequency=0.0, free_uncertainty=0.0, drift=1.5)
     told = {each.name: each for each in _stiffness_values(floating, settings)}
     assert told["free_frequency"].uncertainty is None
-    assert (told["drift"].value, told["drift"].uncertainty) == (approx(1.5), None)
+    assert told["drift"].value == approx(1.5)
+    assert told["drift"].uncertainty is None
 
 
 def fit(kind: str, frequency: list[float], peak: float) -> Any:
