@@ -94,3 +94,20 @@ def test_an_additional_point_needs_speed_and_pressure() -> None:
     assert point.shades is not None
     assert point.shades.tolist() == approx([40.0])
     assert point.scale_ends == (0.0, 100.0)
+
+
+def test_speed_and_pressure_are_drawn_by_their_logarithms_and_what_is_not_stated_beside_them() -> None:
+    aside, known = study_chart(None).panels
+    assert known.x.logarithmic
+    assert known.y.logarithmic
+    assert (known.x.unit, known.y.unit) == ("m/s", "Pa")
+    assert not aside.x.logarithmic
+    assert not aside.y.logarithmic
+    assert (aside.x.lowest, aside.x.highest) == (-0.1, 1.0)
+    assert aside.y.highest == 0.5
+    unplaced = sum(isinstance(part, Note) for part in aside.parts)
+    assert aside.y.lowest == 0.5 - max(unplaced, 5)
+    for axis in (known.x, known.y):
+        assert axis.lowest is not None
+        assert axis.highest is not None
+        assert 0 < axis.lowest < axis.highest

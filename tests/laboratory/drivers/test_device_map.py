@@ -292,3 +292,10 @@ def test_all_that_is_beyond_the_devices_is_told_at_once_each_with_its_step_and_w
         f"step 5: the drive reaches 14 V; {name} gives at most 8 V",
         f"step 8: needs 3 1/s; {motor} turns at most at 0.1 1/s",
     ]
+
+
+def test_the_schema_of_a_role_with_several_drivers_is_one_of_their_sections() -> None:
+    sections = device_map_schema()["properties"]
+    assert len(sections["drive"]["oneOf"]) == 3
+    assert len(sections["acquisition"]["oneOf"]) == 2
+    assert "oneOf" not in json.dumps(sections["guard"])  # of one driver

@@ -63,7 +63,7 @@ def asked(monkeypatch: MonkeyPatch) -> Asked:
 
 
 def test_a_rig_with_a_voltage_has_an_amplifier_and_follows_its_resonance(asked: Asked) -> None:
-    answer = fmu(RIG, fmi="2", delay="2ms", rate="10kHz", closed_loop="20ms", quality=80.0, coupling=0.3)
+    answer: Any = fmu(RIG, fmi="2", delay="2ms", rate="10kHz", closed_loop="20ms", quality=80.0, coupling=0.3)
     assert asked["resonance"][0][1:] == (80.0, 0.3)
     _, settings = asked["control"][0]
     assert settings.amplifier.voltage_maximum == approx(40.0)
@@ -103,7 +103,7 @@ def test_a_commanded_amplitude_has_a_limit_of_its_own_and_no_resonance_to_track(
     assert settings.amplifier is None
     for argument in ({"coupling": 0.3}, {"track": True}):
         with raises(InvalidInput, match="has no meaning for an amplitude that is commanded"):
-            fmu(RIG, **argument)  # type: ignore[arg-type]
+            fmu(RIG, **argument)
 
 
 def test_an_amplitude_of_one_frequency_is_not_tracked(asked: Asked) -> None:
