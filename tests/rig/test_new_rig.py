@@ -330,7 +330,7 @@ def test_a_soft_body_is_a_layer_of_its_thickness_with_what_the_catalogue_knows_o
     assert set(table) == {"model", "layer_thickness", "dynamic_modulus_ratio", "layer_loss", "layer_density"}
     assert felt.assumptions["friction.layer_thickness"] == "as stated, on a rigid base"
     assert set(felt.assumptions) == {f"friction.{key}" for key in table if key != "model"}
-    with raises(InvalidInput, match="layer_thickness is of a soft body, and .* is none"):
+    with raises(InvalidInput, match=r"layer_thickness is of a soft body, and .* is none"):
         KnownBody(material=material("stainless_steel_316")).layer(3e-3)
 
 

@@ -15,6 +15,7 @@ from sonolube.laboratory.catalogue.measured import (
     _cell,
     _conditions,
     _mean_of,
+    _recordings,
     _separate_levels,
     _steady_change,
     level_rows,
@@ -221,6 +222,16 @@ def test_of_a_folder_the_recordings_alone_are_taken_in_by_name(tmp_path: Path) -
     folder = take_in(tmp_path / "runs", old)
     assert read_run(folder).known.referenced == (str(old / "a.csv"), str(old / "b.csv"))
     assert read_run(folder).summary.title == "old"
+
+
+def test_recordings_of_a_folder_are_parts_in_the_order_of_their_names_however_the_disk_lists_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in "abc":
+        recording(tmp_path / f"{name}.csv", friction_force=np.full(500, 0.4))
+    listed = [tmp_path / f"{name}.csv" for name in "cab"]
+    monkeypatch.setattr(Path, "iterdir", lambda path: iter(listed))
+    assert _recordings(tmp_path) == sorted(listed)
 
 
 def test_a_stretch_of_one_voltage_is_not_searched_for_steps(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
