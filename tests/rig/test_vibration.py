@@ -26,7 +26,15 @@ from sonolube.models.friction import FRICTION_MODELS
 from sonolube.rig import Simulation, read_rig, rig_from, simulate, start_up
 from sonolube.rig.driven_rig import DriveVoltage, driven_rig, waveform_of
 from sonolube.rig.resolved_rig import resolved_rig
-from sonolube.rig.vibration import _from_rest, _of_march, _same, _segments, contact_loss_fraction, steady_vibration
+from sonolube.rig.vibration import (
+    _from_rest,
+    _of_balance,
+    _of_march,
+    _same,
+    _segments,
+    contact_loss_fraction,
+    steady_vibration,
+)
 
 TRIBOMETER = Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml"
 COMPUTED = "vibration.amplitude_source=computed"
@@ -333,3 +341,37 @@ def test_cuts_lie_in_the_middle_of_their_beat_where_it_drifts() -> None:
     late = np.where(n > 1500, n - 250, n)
     found = segments(np.cos(2 * np.pi * (late - 100) / 640), marched(32, 200, 1000.0), 20e3)
     assert [each.displacement.size for each in found[:4]] == [640, 640, 890, 640]
+
+
+def test_the_elongation_of_a_balanced_motion_is_the_charge_beyond_that_of_the_held_stack_over_its_charge_per_metre(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # q = C V + b x, from the current i = 2 pi i f q: C = 2 nF, V = 10 V, b = 4 C/m, x = 3 um e^(-0.3 i)
+    x = 3e-6 * np.exp(-0.3j)
+    charge = 2e-9 * 10.0 + 4.0 * x
+    states: Any = SimpleNamespace(
+        status=Status.PERIODIC,
+        vibration_amplitude=np.float64(2e-6),
+        coexisting_amplitude=np.float64(np.nan),
+        current_harmonics=np.array([2j * np.pi * 100.0 * charge, 9.0]),
+        voltage_harmonics=np.array([10.0 + 0j, 7.0]),
+        structure=SimpleNamespace(clamped_capacitance=2e-9),
+        mean_displacement=np.float64(1e-7),
+        contact_loss_fraction=np.float64(0.25),
+        dissipated_power=np.float64(0.5),
+        gap_closed=np.bool_(True),
+    )
+    rig: Any = SimpleNamespace(drive=SimpleNamespace(frequency=100.0), stack=SimpleNamespace(charge_per_elongation=4.0))
+    resolved: Any = SimpleNamespace(vibration=SimpleNamespace(source="computed", text="by its parts"))
+    monkeypatch.setattr("sonolube.rig.vibration.gap_motion", lambda states, point: ("motion", point))
+    found: Any = _of_balance(resolved, rig, states, "why")
+    assert found.elongation == approx(x)
+    assert (found.status, found.reason, found.prescribed) == ("periodic", "why", False)
+    assert (found.amplitude_source, found.amplitude_origin) == ("computed", "by its parts")
+    assert found.motions == (("motion", ()),)
+    assert (found.vibration_amplitude, found.mean_displacement) == approx((2e-6, 1e-7))
+    assert (found.contact_loss_fraction, found.dissipated_power) == approx((0.25, 0.5))
+    assert found.coexisting_amplitude is None
+    assert found.gap_closed
+    states.coexisting_amplitude = np.float64(5e-6)
+    assert _of_balance(resolved, rig, states, "why").coexisting_amplitude == approx(5e-6)
