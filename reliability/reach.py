@@ -32,6 +32,7 @@ context = ${{SONOLUBE_TEST-}}
 disable_warnings = no-data-collected,module-not-imported,couldnt-parse,no-ctracer,trace-changed
 """
 _TIME_OF_TESTS = 60.0  # s, of the tests picked for a mutant
+_REACHING = "select distinct name, seconds from reach join test on test.id = reach.test where file = ?"
 
 _KEY = pytest.StashKey[coverage.Coverage]()
 
@@ -123,10 +124,15 @@ def reaching(file: str, line: int) -> list[tuple[str, float]]:
 
     Where a line runs at import, or compiled, no test is seen there: all that reach another line of the file.
     """
-    select = "select distinct name, seconds from reach join test on test.id = reach.test where file = ?"
     with closing(sqlite3.connect(f"file:{MAP}?mode=ro", uri=True)) as base:
-        found = base.execute(f"{select} and line = ? order by seconds", (file, line)).fetchall()
-        return found or base.execute(f"{select} order by seconds", (file,)).fetchall()
+        found = base.execute(f"{_REACHING} and line = ? order by seconds", (file, line)).fetchall()
+    return found or reaching_file(file)
+
+
+def reaching_file(file: str) -> list[tuple[str, float]]:
+    """Tests that reach any line of a file below src/sonolube, and their seconds; the quickest first."""
+    with closing(sqlite3.connect(f"file:{MAP}?mode=ro", uri=True)) as base:
+        return base.execute(f"{_REACHING} order by seconds", (file,)).fetchall()
 
 
 def with_their_files(tests: Sequence[tuple[str, float]]) -> list[tuple[str, float]]:

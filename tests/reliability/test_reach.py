@@ -5,8 +5,10 @@ from pathlib import Path
 import pytest
 from coverage import CoverageData
 from pytest import MonkeyPatch, approx
+from reliability.mutant_list import stages_of
+from reliability.mutation import Mutant
 
-from reliability import reach
+from reliability import mutant_list, reach
 
 
 @pytest.fixture
@@ -60,3 +62,21 @@ def test_the_others_of_a_file_follow_the_tests_that_reach_a_line(source: Path, t
     followed = reach.with_their_files(reach.reaching("rig.py", 1))
     assert [name for name, _ in followed] == ["a.py::first", "a.py::quick", "a.py::slow"]
     assert reach.with_their_files([]) == []
+
+
+def test_of_a_room_none_of_whose_tests_reach_a_line_those_of_its_file_are_taken(
+    source: Path, tmp_path: Path, monkeypatch: MonkeyPatch
+) -> None:
+    monkeypatch.setattr(mutant_list, "MAP", reach.MAP)
+    monkeypatch.setattr(mutant_list, "SOURCE", source)
+    (source / "rig").mkdir(parents=True)
+    (source / "rig" / "speed.py").write_text("LIMIT = 5\n\n\ndef highest():\n    return LIMIT\n")
+    seen = {"tests/cli/a.py::starts": [1, 5], "tests/rig/b.py::asks": [5], "tests/rig/c.py::other": [4]}
+    data = measured(tmp_path, {test: {"rig/speed.py": lines} for test, lines in seen.items()})
+    reach._write(data, dict.fromkeys(seen, 1.0) | {"tests/rig/c.py::other": 2.0})
+    limit, call = (
+        Mutant(file="rig/speed.py", line=line, occurrence=0, column=0, old="", new="")
+        for line in ("LIMIT = 5", "return LIMIT")
+    )
+    assert stages_of(limit) == (["tests/rig/b.py::asks", "tests/rig/c.py::other"], [["tests/cli/a.py::starts"]])
+    assert stages_of(call) == (["tests/rig/b.py::asks"], [["tests/cli/a.py::starts"]])
