@@ -143,7 +143,12 @@ def test_a_pool_ends_while_a_request_still_waits() -> None:
     let_go, ended = Event(), Event()
     pool = Pool(1)
     waiting = pool._threads.submit(let_go.wait, 30.0)
-    ending = Thread(target=lambda: (pool.end(), ended.set()))
+
+    def end() -> None:
+        pool.end()
+        ended.set()
+
+    ending = Thread(target=end)
     ending.start()
     try:
         assert ended.wait(10.0)
