@@ -383,7 +383,8 @@ def _compiled_with(file: str) -> Iterator[str]:
 def _copy() -> Path:
     """Copy of the package for this process, whose mutants follow one another."""
     folder = Path(tempfile.mkdtemp(prefix="mutants-"))
-    return Path(shutil.copytree(SOURCE, folder / "sonolube"))
+    (folder / "examples").symlink_to(ROOT / "examples")  # which the package finds from its own place
+    return Path(shutil.copytree(SOURCE, folder / "src" / "sonolube"))
 
 
 def first_failure(mutant: Mutant, stages: Sequence[Sequence[str]], *, limit: float = _LIMIT) -> str:

@@ -1,6 +1,8 @@
 """Places of a module that are changed, and tests that are not there or cannot be collected."""
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -52,3 +54,12 @@ def test_tests_that_are_not_there_keep_no_other_from_failing(tmp_path: Path, mon
     (tmp_path / "test_made.py").write_text("def test_it():\n    assert 0")
     tests = ["test_gone.py", "test_made.py::test_renamed", "test_made.py::test_it"]
     assert mutation._failed(tests, dict(os.environ), 60.0) == "test_made.py::test_it"
+
+
+def test_the_copy_that_is_changed_finds_the_examples_of_the_package() -> None:
+    environment = os.environ | {"PYTHONPATH": str(mutation._copy().parent)}
+    code = "from sonolube import example_files; example_files.example_file('tribometer'); print(example_files.__file__)"
+    run = subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True, cwd="/"
+    )
+    assert run.stdout.startswith(str(mutation._copy()))
