@@ -13,6 +13,7 @@ from sonolube.measurement.friction.windows import SteadyStateOnset
 from sonolube.report.measured import friction, friction_steps
 from sonolube.report.measured.friction import (
     FrictionSettings,
+    _rest_caveat,
     _steady_part,
     friction_sheet,
     joined_friction_sheet,
@@ -191,3 +192,17 @@ def test_speeds_and_windows_of_the_settings_are_positive() -> None:
     for given in ({"sliding_speed": 0.0}, {"rotation_speed": -1.0}, {"window_duration": 0.0}):
         with raises(InvalidInput, match=f"{next(iter(given))} must be positive"):
             FrictionSettings(**given)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("rests", "ending"), [(3, "7 s"), (4, "7 s and 1 more"), (5, "7 s and 2 more")])
+def test_three_rests_are_named_and_the_others_counted_and_short_ones_are_none(rests: int, ending: str) -> None:
+    # rests of a second from 0, 3, 6, 9 and 12 s on, and one of 0.4 s from 20 s on
+    time = np.arange(2500) / 100
+    rest = np.zeros(time.size, dtype=bool)
+    for number in range(rests):
+        rest[300 * number : 300 * number + 101] = True
+    rest[2000:2040] = True
+    (told,) = _rest_caveat(xr.Dataset({"friction_force": ("time", time)}, {"time": time}), rest)
+    by = "at rest by the force, below half of that without voltage"
+    assert told.caveats == (f"{by}, and left out: 0 s to 1 s, 3 s to 4 s, 6 s to {ending}",)
+    assert _rest_caveat(xr.Dataset({}, {"time": time}), np.zeros(time.size, dtype=bool)) == []
