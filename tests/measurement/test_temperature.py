@@ -152,3 +152,16 @@ def test_the_rise_of_a_stage_is_the_mean_over_the_interpolated_reference() -> No
         temperature_rise_by_stage(
             time=TIME, temperature=TIME, reference_time=TIME, reference_temperature=TIME, stages=[0.0, 3.0, 3.05]
         )
+
+
+def test_few_correlated_values_leave_one_degree_of_freedom_at_least() -> None:
+    # of one degree of freedom intervals of 95 and 90 % are 12.706 and 6.314 standard errors, of two 4.303 and 2.920
+    time = np.arange(12.0)
+    temperature = 80 - 60 * np.exp(-time / 3.0) + 2.0 * np.sin(2 * np.pi * time / 12)
+    wide, narrow = (
+        fit_temperature_response(
+            time=time, temperature=temperature, exponentials=1, confidence_level=level
+        ).final_temperature
+        for level in (0.95, 0.9)
+    )
+    assert (wide.upper - wide.value) / (narrow.upper - narrow.value) == approx(12.7062 / 6.31375, rel=1e-4)
