@@ -1,7 +1,7 @@
 """Temperature: known rises and time constants are recovered, with the nominal coverage of their intervals."""
 
 import numpy as np
-from pytest import approx, mark, raises
+from pytest import MonkeyPatch, approx, mark, raises
 from scipy import stats
 from scipy.optimize import least_squares
 
@@ -154,14 +154,20 @@ def test_the_rise_of_a_stage_is_the_mean_over_the_interpolated_reference() -> No
         )
 
 
-def test_few_correlated_values_leave_one_degree_of_freedom_at_least() -> None:
-    # of one degree of freedom intervals of 95 and 90 % are 12.706 and 6.314 standard errors, of two 4.303 and 2.920
+@mark.parametrize(
+    ("inefficiency", "ratio"), [(6.0, 12.7062 / 6.31375), (2.4, 4.30265 / 2.91999), (2.0, 3.18245 / 2.35336)]
+)
+def test_correlated_values_count_as_fewer_and_leave_one_degree_of_freedom_at_least(
+    monkeypatch: MonkeyPatch, inefficiency: float, ratio: float
+) -> None:
+    # 12 values less 3 parameters: Student's quantiles of 95 and 90 % with one, two and three degrees of freedom
+    monkeypatch.setattr("sonolube.measurement.temperature.statistical_inefficiency", lambda residuals: inefficiency)
     time = np.arange(12.0)
-    temperature = 80 - 60 * np.exp(-time / 3.0) + 2.0 * np.sin(2 * np.pi * time / 12)
+    temperature = 80 - 60 * np.exp(-time / 3.0) + 0.1 * np.sin(2 * np.pi * time / 5)
     wide, narrow = (
         fit_temperature_response(
             time=time, temperature=temperature, exponentials=1, confidence_level=level
         ).final_temperature
         for level in (0.95, 0.9)
     )
-    assert (wide.upper - wide.value) / (narrow.upper - narrow.value) == approx(12.7062 / 6.31375, rel=1e-4)
+    assert (wide.upper - wide.value) / (narrow.upper - narrow.value) == approx(ratio, rel=1e-4)
