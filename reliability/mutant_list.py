@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from reliability.mutation import ROOT, SOURCE, Mutant, entries_of, first_failure, room_of, sampled, tests_of
-from reliability.reach import MAP, picked, reaching
+from reliability.reach import MAP, picked, reaching, reaching_file, with_their_files
 from reliability.study import Measure, Record, Study
 
 
@@ -136,6 +136,9 @@ def _of_room(room: str, records: Sequence[Record]) -> str:
 def stages_of(mutant: Mutant, *, known: str = "") -> tuple[list[str], list[list[str]]]:
     """Tests of a mutant's own room, then stages of the others: those that reach its line, of a minute each.
 
+    Where these take less than a minute, the others of their files follow. A line that runs at import is seen in the
+    tests that start a program alone: where none of its room does, those that reach another line of the file are taken.
+
     Without a map of lines (`python -m reliability.reach`) those that name what its module defines.
 
     Parameters
@@ -148,8 +151,11 @@ def stages_of(mutant: Mutant, *, known: str = "") -> tuple[list[str], list[list[
     row = mutant.row((SOURCE / mutant.file).read_text(encoding="utf-8"))
     own: list[str]
     if MAP.exists() and row is not None and (tests := reaching(mutant.file, row + 1)):
-        own = picked([test for test in tests if test[0].startswith(room)])
-        rest = [picked([test for test in tests if not test[0].startswith(room)])]
+        near = [test for test in tests if test[0].startswith(room)]
+        own = picked(
+            with_their_files(near or [test for test in reaching_file(mutant.file) if test[0].startswith(room)])
+        )
+        rest = [picked(with_their_files([test for test in tests if not test[0].startswith(room)]))]
     else:
         first, second, above = tests_of(mutant.file)
         own, rest = [*first, *second], [above]

@@ -1,7 +1,8 @@
-"""Map from lines of the package to the tests that reach them: ``python -m reliability.reach [TESTS ...]``.
+"""Map from lines of the package to the tests that reach them: ``python -m reliability.reach [--add] [TESTS ...]``.
 
 The tests run once under coverage, each with its name as context, also in the programs that they start; the map is
-kept in out/reliability/reach.sqlite, from which the tests of a mutant are picked, the quickest first.
+kept in out/reliability/reach.sqlite, from which the tests of a mutant are picked, the quickest first. With --add the
+tests that run join those of the map, in place of what it had of them.
 """
 
 import os
@@ -31,6 +32,7 @@ context = ${{SONOLUBE_TEST-}}
 disable_warnings = no-data-collected,module-not-imported,couldnt-parse,no-ctracer,trace-changed
 """
 _TIME_OF_TESTS = 60.0  # s, of the tests picked for a mutant
+_REACHING = "select distinct name, seconds from reach join test on test.id = reach.test where file = ?"
 
 _KEY = pytest.StashKey[coverage.Coverage]()
 
@@ -72,8 +74,8 @@ def pytest_unconfigure(config: pytest.Config) -> None:
 # -- making and reading the map
 
 
-def make(tests: Sequence[str]) -> None:
-    """Run tests under coverage and keep which reach which line."""
+def make(tests: Sequence[str], *, add: bool = False) -> None:
+    """Run tests under coverage and keep which reach which line, beside the other tests of the map where added."""
     shutil.rmtree(_PARTS, ignore_errors=True)
     _PARTS.mkdir(parents=True)
     settings = _PARTS / "settings"
@@ -81,10 +83,10 @@ def make(tests: Sequence[str]) -> None:
     environment = {**os.environ, "SONOLUBE_REACH": str(settings), "OPENBLAS_NUM_THREADS": "1", "MPLBACKEND": "Agg"}
     command = [sys.executable, "-m", "pytest", "-q", "-p", "reliability.reach", "-n", "2", "--dist", "worksteal"]
     subprocess.run([*command, *tests], cwd=ROOT, env=environment, check=False)
-    _combine()
+    _combine(add=add)
 
 
-def _combine() -> None:
+def _combine(*, add: bool) -> None:
     """Write the map from what the processes of the tests have measured."""
     combined = coverage.CoverageData(basename=str(_PARTS / "combined"))
     for part in sorted(_PARTS.glob("coverage.*")):
@@ -93,22 +95,28 @@ def _combine() -> None:
             data.read()
             combined.update(data)
     timed = [line.split(" ", 1) for line in (_PARTS / "seconds").read_text("utf-8").splitlines()]
-    _write(combined, {name: float(seconds) for seconds, name in timed})
+    _write(combined, {name: float(seconds) for seconds, name in timed}, add=add)
 
 
-def _write(data: coverage.CoverageData, seconds: dict[str, float]) -> None:
-    MAP.unlink(missing_ok=True)
+def _write(data: coverage.CoverageData, seconds: dict[str, float], *, add: bool = False) -> None:
+    if not add:
+        MAP.unlink(missing_ok=True)
     with closing(sqlite3.connect(MAP)) as base, base:
-        base.execute("create table test (id integer primary key, name text unique, seconds real)")
-        base.execute("create table reach (file text, line integer, test integer)")
+        base.execute("create table if not exists test (id integer primary key, name text unique, seconds real)")
+        base.execute("create table if not exists reach (file text, line integer, test integer)")
+        known = [(i,) for i, name in base.execute("select id, name from test") if name in seconds]
+        base.execute("create temporary table former (test integer primary key)")
+        base.executemany("insert into former values (?)", known)
+        base.execute("delete from reach where test in (select test from former)")
+        base.executemany("delete from test where id = ?", known)
         base.executemany("insert into test (name, seconds) values (?, ?)", seconds.items())
-        number = {name: i for i, name in base.execute("select id, name from test")}
+        number = {name: i for i, name in base.execute("select id, name from test") if name in seconds}
         for file in data.measured_files():
             below = Path(file).relative_to(SOURCE).as_posix()
             for line, contexts in data.contexts_by_lineno(file).items():
                 tests = {number[name] for context in contexts for name in context.split("|") if name in number}
                 base.executemany("insert into reach values (?, ?, ?)", [(below, line, test) for test in tests])
-        base.execute("create index place on reach (file, line)")
+        base.execute("create index if not exists place on reach (file, line)")
 
 
 def reaching(file: str, line: int) -> list[tuple[str, float]]:
@@ -116,10 +124,28 @@ def reaching(file: str, line: int) -> list[tuple[str, float]]:
 
     Where a line runs at import, or compiled, no test is seen there: all that reach another line of the file.
     """
-    select = "select distinct name, seconds from reach join test on test.id = reach.test where file = ?"
     with closing(sqlite3.connect(f"file:{MAP}?mode=ro", uri=True)) as base:
-        found = base.execute(f"{select} and line = ? order by seconds", (file, line)).fetchall()
-        return found or base.execute(f"{select} order by seconds", (file,)).fetchall()
+        found = base.execute(f"{_REACHING} and line = ? order by seconds", (file, line)).fetchall()
+    return found or reaching_file(file)
+
+
+def reaching_file(file: str) -> list[tuple[str, float]]:
+    """Tests that reach any line of a file below src/sonolube, and their seconds; the quickest first."""
+    with closing(sqlite3.connect(f"file:{MAP}?mode=ro", uri=True)) as base:
+        return base.execute(f"{_REACHING} order by seconds", (file,)).fetchall()
+
+
+def with_their_files(tests: Sequence[tuple[str, float]]) -> list[tuple[str, float]]:
+    """Tests with their seconds, followed by the others of their files, the quickest first.
+
+    What a fixture of a module or a cached function computes is seen in the first test that asks for it alone, and the
+    others of the file, which look at the result too, do not reach its lines.
+    """
+    files = {name.partition("::")[0] for name, _ in tests}
+    known = {name for name, _ in tests}
+    with closing(sqlite3.connect(f"file:{MAP}?mode=ro", uri=True)) as base:
+        every = base.execute("select name, seconds from test order by seconds").fetchall()
+    return [*tests, *(each for each in every if each[0].partition("::")[0] in files and each[0] not in known)]
 
 
 def picked(tests: Sequence[tuple[str, float]]) -> list[str]:
@@ -135,4 +161,4 @@ def picked(tests: Sequence[tuple[str, float]]) -> list[str]:
 
 
 if __name__ == "__main__":
-    make(sys.argv[1:])
+    make([each for each in sys.argv[1:] if each != "--add"], add="--add" in sys.argv[1:])

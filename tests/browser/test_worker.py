@@ -6,6 +6,7 @@ import os
 import re
 import signal
 from collections.abc import Iterator, Mapping
+from threading import Event, Thread
 from typing import Any
 
 import pytest
@@ -136,3 +137,22 @@ def test_the_traceback_of_a_fault_is_printed_for_who_runs_the_workbench(
     monkeypatch.setitem(KINDS._loaded, "task", stand_in)
     reply("task", {"raises": "IndexError"}, NOWHERE)
     assert "Traceback" in capsys.readouterr().err
+
+
+def test_a_pool_ends_while_a_request_still_waits() -> None:
+    let_go, ended = Event(), Event()
+    pool = Pool(1)
+    waiting = pool._threads.submit(let_go.wait, 30.0)
+
+    def end() -> None:
+        pool.end()
+        ended.set()
+
+    ending = Thread(target=end)
+    ending.start()
+    try:
+        assert ended.wait(10.0)
+        assert not waiting.done()
+    finally:
+        let_go.set()
+        ending.join()

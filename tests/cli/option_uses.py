@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from reliability import virtual_contact
 from tests.mode_files import write_universal_file
 
+from reliability import virtual_contact
 from sonolube.laboratory import Block, Channel
 from sonolube.laboratory.records import new_run
 

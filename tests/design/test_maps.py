@@ -1,6 +1,8 @@
 """Maps against Table 4.1, single operating points and closed forms; Gaussian process regression of measured runs."""
 
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,10 +20,12 @@ from sonolube.design import (
     velocity_stress_map,
 )
 from sonolube.design.map_figures import panels_text
+from sonolube.design.maps import default_axes, map_kinds
 from sonolube.errors import InvalidInput
-from sonolube.rig import operating_points, read_rig
+from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, operating_points, read_rig
 
-RIG = read_rig(Path(__file__).parents[2] / "examples" / "rigs" / "power_map.toml")
+RIGS = Path(__file__).parents[2] / "examples" / "rigs"
+RIG = read_rig(RIGS / "power_map.toml")
 SPEEDS, VOLTS, LOADS = np.linspace(0.02, 0.2, 7), np.array([5.1, 10.3, 15.5, 20.7, 25.9]), np.arange(3.0, 10.0)
 
 
@@ -171,3 +175,45 @@ def test_far_from_all_runs_the_uncertainty_of_a_gaussian_process_grows() -> None
 def test_unusable_runs_are_refused(runs: np.ndarray, reduction: np.ndarray, message: str) -> None:
     with raises(InvalidInput, match=message):
         gaussian_process_map(runs=runs, friction_reduction=reduction, points=[[0.0, 0.0]])
+
+
+def axes_of(kind: str, rig: Rig = RIG) -> dict[str, Any]:
+    """Number of values, first and last of each axis; all are even."""
+    found = default_axes(rig, kind=kind)
+    for values in found.values():
+        assert np.diff(values) == approx(np.full(values.size - 1, (values[-1] - values[0]) / (values.size - 1)))
+    return {name: (values.size, float(values[0]), float(values[-1])) for name, values in found.items()}
+
+
+def test_axes_of_a_map_lie_about_the_operating_point_of_the_rig() -> None:
+    assert RIG.drive is not None
+    volts, f, load = RIG.drive.voltage_peak_to_peak or 0.0, RIG.drive.frequency, RIG.normal_load
+    speeds = (77, approx(0.01), approx(0.2))
+    assert axes_of("velocity-power") == {
+        "sliding_speed": speeds,
+        "voltage_peak_to_peak": (50, approx(0.02 * volts), approx(volts)),
+        "normal_load": (7, approx(0.6 * load), approx(1.8 * load)),
+    }
+    assert axes_of("velocity-stress") == {
+        "sliding_speed": speeds,
+        "normal_load": (25, approx(0.6 * load), approx(1.8 * load)),
+        "voltage_peak_to_peak": (5, approx(0.2 * volts), approx(volts)),
+    }
+    assert axes_of("frequency-voltage") == {
+        "frequency": (161, approx(0.8 * f), approx(1.2 * f)),
+        "voltage_peak_to_peak": (50, approx(0.02 * volts), approx(volts)),
+    }
+
+
+def test_axes_of_a_rig_by_its_amplitude_reach_up_to_it_and_a_frequency_needs_a_drive() -> None:
+    bush = read_rig(RIGS / "bronze_bush.toml")  # 2 um at 20 kHz
+    assert axes_of("velocity-amplitude", bush)["vibration_amplitude"] == (50, approx(0.04e-6), approx(2e-6))
+    assert axes_of("velocity-stress", bush)["vibration_amplitude"] == (5, approx(0.4e-6), approx(2e-6))
+    assert axes_of("frequency-amplitude", bush)["frequency"] == (41, approx(16e3), approx(24e3))
+    with raises(InvalidInput, match=r"drive\.frequency is missing; give it, or map over the sliding speed"):
+        default_axes(replace(bush, drive=None), kind="frequency-amplitude")
+
+
+def test_each_kind_of_map_is_of_the_quantity_that_its_axes_have() -> None:
+    assert map_kinds(VOLTAGE) == ("velocity-power", "velocity-stress", "frequency-voltage")
+    assert map_kinds(AMPLITUDE) == ("velocity-amplitude", "velocity-stress", "frequency-amplitude")

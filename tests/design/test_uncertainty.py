@@ -1,6 +1,7 @@
 """Uncertainty propagation: samples against single rigs, and outcomes whose distribution has a closed form."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -20,8 +21,10 @@ from sonolube.design import (
     sobol_chart,
     sobol_indices,
 )
+from sonolube.design.uncertainty import identified_structure
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.rig import operating_points, read_rig, wear_point
+from sonolube.validation.tribometer import tribometer_stack
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
 UNCERTAIN = RIGS / "tribometer_uncertain.toml"
@@ -85,6 +88,30 @@ def test_uncertainty_of_a_rig_without_structure_propagates_through_its_wear_mode
     known = wear_point(read_rig(path, changes=[f"contact.roughness.rms_height={height!r} m"]))
     assert float(found["wear_rate_ratio"][5]) == approx(known.wear_rate_ratio, rel=1e-9)
     assert "vibration_velocity" not in available_outcomes(read_rig(path))
+    assert found["status"].values.tolist() == [0] * 32
+    assert found["reason"].values.tolist() == [0] * 32
+    assert found["reason_text"].values.tolist() == ["computed"]
+    assert np.isfinite(found["wear_rate_ratio"].values).all()
+
+
+@pytest.mark.parametrize(("factor", "own"), [(1.009, True), (1.011, False), (0.991, True), (0.989, False)])
+def test_an_identified_structure_is_of_the_stack_of_the_facts_within_a_percent(
+    monkeypatch: pytest.MonkeyPatch, factor: float, own: bool
+) -> None:
+    class Asked(Exception): ...
+
+    def ask(**arguments: object) -> None:
+        raise Asked
+
+    monkeypatch.setattr("sonolube.design.uncertainty.tribometer_identification", ask)
+    rig = replace(
+        read_rig(RIGS / "tribometer.toml"),
+        stack=replace(tribometer_stack(), stack_stiffness=factor * tribometer_stack().stack_stiffness),
+    )
+    with pytest.raises(Asked if own else InvalidInput, match=None if own else "needs the tribometer's stack"):
+        identified_structure(rig, seed=0)
+    with pytest.raises(InvalidInput, match="needs the tribometer's stack"):
+        identified_structure(read_rig(RIGS / "cutter_head.toml"), seed=0)
 
 
 def test_a_refused_sample_keeps_its_reason(tmp_path: Path) -> None:

@@ -134,3 +134,18 @@ def test_bounds_have_to_rise_and_be_positive() -> None:
         identify(oscillator, facts=[fact("rate")], bounds={**BOUNDS, "tip_mass": (0.0, 1.0)})
     with raises(InvalidInput, match="bounds must name at least one free parameter"):
         identify(oscillator, facts=[fact("rate")], bounds={})
+
+
+def test_what_no_fact_determines_lies_as_near_to_the_middle_of_its_bounds_as_the_facts_allow() -> None:
+    # of the rate alone: damping in the geometric middle, and mass and stiffness, whose logarithms differ by that of
+    # 2500, at the least sum of squares of their distances from it over their half widths
+    estimates = identified(fact("rate")).estimates
+    assert estimates["arm_damping"].value == approx(1.0, rel=1e-3)
+    middle, half = (
+        {name: (math.log(high) + sign * math.log(low)) / 2 for name, (low, high) in BOUNDS.items()} for sign in (1, -1)
+    )
+    weights = half["tip_mass"] ** -2, half["arm_stiffness"] ** -2
+    apart = middle["arm_stiffness"] - math.log(2500)
+    mass = (weights[0] * middle["tip_mass"] + weights[1] * apart) / sum(weights)
+    assert estimates["tip_mass"].value == approx(math.exp(mass), rel=1e-3)
+    assert estimates["arm_stiffness"].value == approx(2500 * math.exp(mass), rel=1e-3)

@@ -8,7 +8,7 @@ from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
 from sonolube.identification import StructureBuilder, parametric_structure, reference_parameters
-from sonolube.identification.structure_parametrisation import StructureMatrices
+from sonolube.identification.structure_parametrisation import StructureMatrices, _affine_arrays
 from sonolube.models.actuator import PiezoStack
 from sonolube.models.dynamics import GROUND, Damper, LumpedChain, Spring, Structure, chain_structure, modal_structure
 
@@ -103,3 +103,16 @@ def test_parameters_other_than_the_free_ones_are_refused() -> None:
     structure = parametric_structure(mounted_stack, reference={"tip_mass": 1.0})
     with raises(InvalidInput, match="parameters must be tip_mass, got arm_stiffness"):
         structure.matrices({"arm_stiffness": np.array([1.0])}, {})
+
+
+def test_a_structure_that_is_linear_in_its_parameters_is_known_from_its_change_by_each() -> None:
+    linear = _affine_arrays(mounted_stack, {"tip_mass": 0.2, "arm_stiffness": 1e8})
+    assert linear is not None
+    assert _affine_arrays(two_modes, {"frequency": 20e3, "damping_ratio": 0.01}) is None  # by its square
+
+    def impossible(parameters: Mapping[str, float]) -> Structure:
+        if parameters["tip_mass"] > 0.3:
+            raise InvalidInput("too heavy")
+        return mounted_stack(parameters)
+
+    assert _affine_arrays(impossible, {"tip_mass": 0.2}) is None

@@ -157,6 +157,8 @@ motor.acme = acme_lab:AcmeMotor
 drive.unfinished = acme_lab:Unfinished
 drive.needy = acme_lab:Needy
 drive.hollow = acme_lab:Hollow
+drive.other = acme_lab:Inputs
+drive.function = acme_lab:note
 drive.absent = acme_lab:Absent
 drive.broken = acme_broken:Drive
 """
@@ -282,6 +284,8 @@ def test_all_faults_of_a_section_of_another_package_are_told_with_their_keys(pac
         ("absent", r"driver drive\.absent of the package acme-lab cannot be loaded \(AttributeError: "),
         ("needy", r"driver drive\.needy of the package acme-lab needs 'abacus', which is no optional part"),
         ("unfinished", r"driver drive\.unfinished of the package acme-lab is no complete DriveEntry; mend"),
+        ("other", r"driver drive\.other of the package acme-lab is no complete DriveEntry; mend"),
+        ("function", r"driver drive\.function of the package acme-lab is no complete DriveEntry; mend"),
     ],
 )
 def test_a_broken_driver_is_one_line_that_names_its_package(
@@ -329,11 +333,24 @@ def test_a_driver_that_two_packages_add_is_refused_and_one_of_sonolube_is_not_re
     assert list(DRIVERS["drive"]).count("scpi") == 1
 
 
+def test_the_drivers_of_a_role_are_those_of_sonolube_then_those_of_packages(packages: Path) -> None:
+    drives, guards = DRIVERS["drive"], DRIVERS["guard"]
+    assert drives.own == ("scpi", "daqmx", "scpi_commands")
+    assert list(drives)[:3] == list(drives.own)
+    assert len(drives) == len(list(drives)) == 3 + len(drives.added)
+    assert "acme" in drives
+    assert "acme" not in guards
+    assert (guards.own, list(guards), len(guards)) == (("daqmx",), ["daqmx"], 1)
+    known = known_drivers()
+    assert known["drive"][:4] == ("scpi", "daqmx", "scpi_commands", "absent (acme-lab)")
+    assert known["guard"] == ("daqmx",)
+
+
 def test_packages_are_looked_up_when_a_map_names_a_driver_that_sonolube_does_not_have(packages: Path) -> None:
     assert known_drivers()["drive"] == (
         *("scpi", "daqmx", "scpi_commands"),
-        *("absent (acme-lab)", "acme (acme-lab)", "broken (acme-lab)", "hollow (acme-lab)", "needy (acme-lab)"),
-        "unfinished (acme-lab)",
+        *("absent (acme-lab)", "acme (acme-lab)", "broken (acme-lab)", "function (acme-lab)", "hollow (acme-lab)"),
+        *("needy (acme-lab)", "other (acme-lab)", "unfinished (acme-lab)"),
     )
     assert "acme_lab" not in sys.modules
     example = Path(__file__).parents[2] / "examples" / "lab" / "devices.toml"

@@ -1,7 +1,7 @@
 """Temperature: known rises and time constants are recovered, with the nominal coverage of their intervals."""
 
 import numpy as np
-from pytest import approx, mark, raises
+from pytest import MonkeyPatch, approx, mark, raises
 from scipy import stats
 from scipy.optimize import least_squares
 
@@ -154,25 +154,20 @@ def test_the_rise_of_a_stage_is_the_mean_over_the_interpolated_reference() -> No
         )
 
 
-def test_a_pulse_of_heat_is_no_step_response() -> None:
-    time = np.linspace(0.0, 50.0, 501)
-    pulse = 300.0 + 4.0 * np.sin(np.pi * time / 50.0)  # rises and falls
-    with raises(InvalidInput, match=r"no determined step response: its exponentials of .* cancel each other"):
-        fit_temperature_response(time=time, temperature=pulse, exponentials=2)
-
-
-def test_a_temperature_that_stays_within_its_noise_has_no_response() -> None:
-    rng = np.random.default_rng(5)
-    time = np.linspace(0.0, 50.0, 501)
-    rest = 294.15 + 0.05 * rng.standard_normal(501)
-    with raises(InvalidInput, match="is not beyond its noise"):
-        fit_temperature_response(time=time, temperature=rest, exponentials=1)
-
-
-def test_two_exponentials_that_the_record_does_not_tell_apart_become_one() -> None:
-    rng = np.random.default_rng(6)
-    time = np.linspace(0.0, 300.0, 1501)
-    settling = 20.0 * (1 - np.exp(-time / 60.0)) + 0.01 * rng.standard_normal(1501)
-    found = fit_temperature_response(time=time, temperature=settling)
-    assert len(found.time_constants) == 1
-    assert found.time_constants[0].value == approx(60.0, rel=0.01)
+@mark.parametrize(
+    ("inefficiency", "ratio"), [(6.0, 12.7062 / 6.31375), (2.4, 4.30265 / 2.91999), (2.0, 3.18245 / 2.35336)]
+)
+def test_correlated_values_count_as_fewer_and_leave_one_degree_of_freedom_at_least(
+    monkeypatch: MonkeyPatch, inefficiency: float, ratio: float
+) -> None:
+    # 12 values less 3 parameters: Student's quantiles of 95 and 90 % with one, two and three degrees of freedom
+    monkeypatch.setattr("sonolube.measurement.temperature.statistical_inefficiency", lambda residuals: inefficiency)
+    time = np.arange(12.0)
+    temperature = 80 - 60 * np.exp(-time / 3.0) + 0.1 * np.sin(2 * np.pi * time / 5)
+    wide, narrow = (
+        fit_temperature_response(
+            time=time, temperature=temperature, exponentials=1, confidence_level=level
+        ).final_temperature
+        for level in (0.95, 0.9)
+    )
+    assert (wide.upper - wide.value) / (narrow.upper - narrow.value) == approx(ratio, rel=1e-4)

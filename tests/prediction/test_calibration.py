@@ -1,19 +1,23 @@
 """Calibration on the published rigs, each left out in turn, and the scores against closed forms."""
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
-from pytest import approx
+from pytest import MonkeyPatch, approx
 from scipy.stats import norm
 from tests.prediction.linear_rigs import LINEAR, conditions, measured_rig
 
 from sonolube.prediction.calibration import (
+    _STICK_SLIP,
     BLIND,
     BY_RECORDS,
     MEAN_RATIO,
     SAME_TRIBOMETER,
     Calibration,
     UnseenPrediction,
+    _fitted,
     blind_calibration,
     calibrations,
     mean_ratio_calibration,
@@ -177,3 +181,16 @@ def test_a_population_predicts_each_rig_by_the_others_alone_and_each_group_by_th
     for one in grouped.predictions[:2]:
         assert one.draws.mean() == approx(0.6, abs=0.01)
         assert one.draws.std() == approx(0.05, rel=0.05)
+
+
+def test_one_memory_length_for_several_rigs_is_that_of_the_least_sum_of_squares(monkeypatch: MonkeyPatch) -> None:
+    # ratios of log(length) plus a rig's own offset: of two tests at 0.1 and one at 0.7 the mean is 0.3
+    middle = float(np.log(_STICK_SLIP.median))
+    monkeypatch.setattr(
+        "sonolube.prediction.calibration._stick_slip",
+        lambda rig, log_length: np.full(rig.friction_ratio.size, log_length - middle),
+    )
+    rigs: Any = [SimpleNamespace(friction_ratio=np.array([0.1, 0.1])), SimpleNamespace(friction_ratio=np.array([0.7]))]
+    assert _fitted(rigs) - middle == approx(0.3, abs=1e-4)
+    far: Any = [SimpleNamespace(friction_ratio=np.array([9.0]))]
+    assert _fitted(far) - middle == approx(2.0, abs=1e-4)  # the end of the range

@@ -195,6 +195,12 @@ def test_the_rotation_of_a_probe_has_speed_distance_and_missing_pulses(tmp_path:
     fewer = np.exp(-(((t[:, np.newaxis] - (0.5 + np.delete(np.arange(19.0), [4]))) / 0.02) ** 2)).sum(axis=1)
     other = written(tmp_path / "one.csv", **{"time (s)": t, "magnetic_flux_density (T)": fewer})
     assert rotation_sheet(other, settings=RotationSettings(groove_diameter=0.04)).caveats == ()
+    # of 21 pulses two are less than a tenth
+    tenth = np.exp(-(((t[:, np.newaxis] - 0.25 - 0.9 * np.delete(np.arange(21.0), [4, 9])) / 0.02) ** 2)).sum(axis=1)
+    other = written(tmp_path / "two.csv", **{"time (s)": t, "magnetic_flux_density (T)": tenth})
+    two = rotation_sheet(other, settings=RotationSettings(groove_diameter=0.04))
+    assert (numbers(two)["pulses"], numbers(two)["repaired_pulses"]) == (21, 2)
+    assert two.caveats == ()
 
 
 def test_a_temperature_has_its_rise_time_constant_and_difference_to_a_test_without(tmp_path: Path) -> None:

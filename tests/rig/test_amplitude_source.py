@@ -29,6 +29,8 @@ from sonolube.rig import (
     temperature_point,
     thermal_solid,
 )
+from sonolube.rig.amplitude_source import VIBRATIONS
+from sonolube.rig.record import MeasuredUnder
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.rig.simulation import vibrated_friction
 
@@ -163,6 +165,35 @@ def test_a_stated_amplitude_holds_at_its_own_frequency_only() -> None:
     points = operating_points(read_rig(RIGS / "collar.toml"), frequency=[25e3, 30e3])
     assert points.status.tolist() == ["periodic", "refused"]
     assert "holds at 25 kHz only: choose the amplitude computed" in str(points.reason[1])
+
+
+def test_a_measured_amplitude_holds_for_a_structure_at_any_drive_and_for_a_sine_at_its_own_frequency() -> None:
+    elsewhere = chosen("tribometer", "measured", "drive.frequency=21kHz", "vibration.frequency=22kHz")
+    assert available_sources(elsewhere)[0] == "measured"
+    sine = ["vibration.vibration_amplitude=2um", "vibration.voltage_peak_to_peak=4V"]
+    own = read_rig(RIGS / "flextensional.toml", changes=sine)
+    assert available_sources(own) == ("measured", "per-volt")
+    assert own.drive is not None
+    for factor, sources in ((1 + 5e-7, ("measured", "per-volt")), (1 + 2e-6, ("per-volt",))):
+        moved = replace(own, drive=replace(own.drive, frequency=factor * own.drive.frequency))
+        stated = replace(moved, measured_under=MeasuredUnder(voltage_peak_to_peak=4.0, frequency=own.drive.frequency))
+        assert available_sources(stated) == sources
+    assert available_sources(replace(own, drive=None, amplitude_per_volt=None)) == ("measured",)
+
+
+def test_a_rig_without_the_voltage_of_its_measurement_has_its_amplitude_at_every_voltage() -> None:
+    rig = read_rig(RIGS / "flextensional.toml", changes=["vibration.vibration_amplitude=2um"])
+    sine = VIBRATIONS["measured"](rig)
+    assert sine.source == "measured"
+    assert sine.sine_amplitude == approx(2e-6)
+    assert volts_of(rig) > 0
+    assert sine.per_volt == approx(2e-6 / volts_of(rig))  # its own voltage, where none is stated
+    assert sine.amplitude_at(3.0) == approx(6e-6 / volts_of(rig))
+    assert rig.drive is not None
+    without = replace(rig, drive=replace(rig.drive, voltage_peak_to_peak=None))
+    held = VIBRATIONS["measured"](without)
+    assert held.per_volt is None
+    assert held.amplitude_at(3.0) == approx(2e-6)
 
 
 def test_a_source_that_the_rig_lacks_is_refused_with_those_that_it_has() -> None:

@@ -117,3 +117,20 @@ def test_a_value_that_the_file_lacks_can_still_be_given_ends() -> None:
 def test_the_spread_of_an_entry_is_set_by_its_whole_key() -> None:
     rig = read_rig(RIGS / "tribometer.toml", changes=["uncertainty.contact.normal_load=normal 2 %"])
     assert rig.content()["uncertainty"] == {"contact.normal_load": "normal 2 %"}
+
+
+@pytest.mark.parametrize(
+    ("key", "entry", "lowest", "highest"),
+    [
+        ("contact.softer.poisson_ratio", "uniform 0.1 to 0.4", 0.0, 0.5),
+        ("stack.coupling_factor", "uniform 0.1 to 0.4", 0.0, 1.0),
+        ("contact.normal_load", "uniform 1 N to 2 N", 0.0, np.inf),
+        ("sliding.sliding_speed", "uniform 1 mm/s to 2 mm/s", 0.0, np.inf),
+        ("drive.voltage_offset", "uniform -1 V to 2 V", -np.inf, np.inf),
+        ("stack.lowest_voltage", "uniform -1 V to 2 V", -np.inf, np.inf),
+        ("stack.highest_voltage", "uniform -1 V to 2 V", -np.inf, np.inf),
+    ],
+)
+def test_a_distribution_is_cut_off_where_its_quantity_ends(key: str, entry: str, lowest: float, highest: float) -> None:
+    law = known(f'"{key}" = "{entry}"')
+    assert (law.lowest, law.highest) == (lowest, highest)

@@ -8,6 +8,7 @@ import xarray as xr
 from pytest import approx
 
 from sonolube.errors import InvalidInput, UnknownName
+from sonolube.models.dynamics import modes
 from sonolube.rig import dataset, frequency_grid, frequency_response, read_rig, structure_in_contact, write_netcdf
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
@@ -67,3 +68,20 @@ def test_a_dataset_keeps_units_and_comes_back_from_its_file(tmp_path: Path) -> N
 def test_a_dataset_of_unknown_quantities_is_refused() -> None:
     with pytest.raises(UnknownName, match="unknown quantity 'loudness'"):
         dataset({"frequency": np.ones(2), "loudness": np.ones(2)}, along="frequency", title="")
+
+
+def test_frequencies_are_even_by_their_ratio_and_closest_at_each_resonance() -> None:
+    rig = TRIBOMETER
+    even = frequency_grid(rig, lowest=1e3, highest=2e3, points=5, resonance_points=1)
+    assert even[1:] / even[:-1] == approx(np.full(even.size - 1, 2**0.25))
+    natural = modes(structure_in_contact(rig))
+    tip = int(np.argmin(np.abs(natural.natural_frequency - 22e3)))
+    f, width = natural.natural_frequency[tip], max(20 * natural.damping_ratio[tip], 1e-4)
+    grid = frequency_grid(rig, lowest=f / 4, highest=4 * f, points=2, resonance_points=5)
+    inner = grid[(grid > f / 4) & (grid < 4 * f)]
+    # at -6, -3, 0, 3 and 6 of sinh over its value at 6, twenty half widths away
+    share = np.sinh(3) / np.sinh(6)
+    steps = 1 + width * np.array([-1, -share, 0, share, 1])
+    expected = [each for each in f * steps if f / 4 < each < 4 * f]
+    assert all(np.isclose(inner, each, rtol=1e-9).any() for each in expected)
+    assert np.all(np.diff(grid) > 0)

@@ -24,9 +24,11 @@ from sonolube.rig.new_rig.pin_and_vibration import (
     scanned_surface,
     surfaces_in_contact,
 )
-from sonolube.rig.new_rig.rig_text import KnownRig, least_known, new_rig_text
+from sonolube.rig.new_rig.rig_text import KnownBody, KnownRig, least_known, new_rig_text
 from sonolube.rig.new_rig.stated_text import pin_shape, speed_of, surface_of
 from sonolube.rig.resolved_rig import resolved_rig
+from sonolube.rig.vibration_direction import VibrationDirection
+from sonolube.text.units import to_si
 
 GROUND = finished_surface("ground N6")
 KNOWN = KnownRig(
@@ -318,3 +320,43 @@ def test_a_property_that_the_catalogue_lacks_of_a_material_is_that_of_its_class(
     rig = rig_of(replace(KNOWN, pin="uncoated_steel", disc="silicon_carbide"))
     assert "unspecified steel" in rig.assumptions["contact.softer.youngs_modulus"]
     assert "contact.softer.youngs_modulus" in rig.uncertainty
+
+
+def test_a_soft_body_is_a_layer_of_its_thickness_with_what_the_catalogue_knows_of_it() -> None:
+    felt = KnownBody(material=material("felt")).layer(3e-3)
+    table = felt.tables["friction"]
+    assert table["model"] == '"soft_layer"'
+    assert to_si(table["layer_thickness"].strip('"'), unit="m", name="layer") == approx(3e-3)
+    assert set(table) == {"model", "layer_thickness", "dynamic_modulus_ratio", "layer_loss", "layer_density"}
+    assert felt.assumptions["friction.layer_thickness"] == "as stated, on a rigid base"
+    assert set(felt.assumptions) == {f"friction.{key}" for key in table if key != "model"}
+    with raises(InvalidInput, match=r"layer_thickness is of a soft body, and .* is none"):
+        KnownBody(material=material("stainless_steel_316")).layer(3e-3)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [({"normal_load": 0.0}, "normal_load must be positive"),
+     ({"sliding_speed": -1.0}, "sliding_speed must be positive"),
+     ({"frequency": 0.0}, "frequency must be positive"),
+     ({"friction_coefficient": 0.0}, "friction_coefficient must be positive"),
+     ({"layer_thickness": 0.0}, "layer_thickness must be positive"),
+     ({"layer_thickness": 1e-3, "direction": VibrationDirection(direction="along")}, "a soft layer has no law for")],
+)  # fmt: skip
+def test_a_number_that_no_rig_has_is_refused_by_its_name(change: dict[str, object], message: str) -> None:
+    with raises(InvalidInput, match=message):
+        replace(KNOWN, **change)  # type: ignore[arg-type]
+    assert replace(KNOWN, friction_coefficient=None).friction_coefficient is None
+
+
+def test_a_body_states_what_the_catalogue_lacks_of_it_and_the_spread_of_a_class() -> None:
+    body = KnownBody(material=material("aluminium_2024"))
+    entries = body.entries("contact.softer", role="pin")
+    assert entries.tables == {"contact.softer": {"material": '"aluminium_2024"', "role": '"pin"'}}
+    assert entries.uncertainty == {}
+    softer = body.entries("contact.softer", role="disc", strength=body.strength)
+    assert softer.tables["contact.softer"]["yield_strength"].endswith('Pa"')
+    assert set(softer.uncertainty) == {"contact.softer.yield_strength"}
+    steel = KnownBody(material=material("steel"))  # a class
+    assert set(steel.entries("contact.harder", role="disc").uncertainty) == {"contact.harder.youngs_modulus"}
+    assert "youngs_modulus" in steel.entries("contact.harder", role="disc").tables["contact.harder"]

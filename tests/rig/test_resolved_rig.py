@@ -13,12 +13,13 @@ from tests.same import same
 
 import sonolube
 from sonolube.errors import InvalidInput, OutsideRange
+from sonolube.models.actuator.drive import Drive
 from sonolube.models.contact import decay_length, normal_force
 from sonolube.models.dynamics import Sine
 from sonolube.models.friction.models import FRICTION_MODELS
 from sonolube.rig import Rig, available_sources, friction_point, operating_points, read_rig, simulate
 from sonolube.rig.amplitude_source import AMPLITUDE_ERROR
-from sonolube.rig.driven_rig import voltage_harmonics, waveform_of
+from sonolube.rig.driven_rig import DriveVoltage, voltage_harmonics, waveform_of
 from sonolube.rig.resolved_rig import (
     ResolvedRig,
     amplitude_labels,
@@ -248,3 +249,18 @@ def test_the_power_of_the_amplifier_needs_a_voltage_and_a_capacitance() -> None:
     assert resolved_rig(replace(STATED, capacitance=None)).amplifier_power() is None
     assert resolved_rig(read_rig(RIGS / "cutter_head.toml")).amplifier_power() is None
     assert resolved_rig(STATED).amplifier_power() == approx(1.53e-6 * 6 * 4 * 16e3)  # 4 V about 4 V: up to 6 V
+
+
+@mark.parametrize(("offset", "highest"), [(0.0, 20.0), (-10.0, 30.0), (15.0, 35.0)])
+def test_an_amplifier_feeds_a_capacitance_from_a_rail_at_the_highest_voltage_of_either_sign(
+    offset: float, highest: float
+) -> None:
+    # D 1.9: C U_max U_pp f, of 360 nF at 40 V peak to peak and 22 kHz
+    voltage = DriveVoltage(drive=Drive(frequency=22e3, voltage_peak_to_peak=40.0, voltage_offset=offset))
+    assert float(voltage.amplifier_power(capacitance=360e-9)) == approx(360e-9 * highest * 40.0 * 22e3)
+    low, high = voltage.range()
+    assert (float(low), float(high)) == approx((offset - 20.0, offset + 20.0))
+    low, high = voltage.range(voltage_peak_to_peak=10.0, voltage_offset=1.0)
+    assert (float(low), float(high)) == approx((-4.0, 6.0))
+    at_half = voltage.amplifier_power(capacitance=360e-9, voltage_peak_to_peak=20.0, voltage_offset=0.0, frequency=11e3)
+    assert float(at_half) == approx(360e-9 * 10.0 * 20.0 * 11e3)

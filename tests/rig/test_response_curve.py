@@ -1,6 +1,7 @@
 """Response curves of a rig through folds, against slow ramps by direct integration."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -8,9 +9,17 @@ from numpy.typing import NDArray
 from pytest import approx, raises
 from scipy.integrate import solve_ivp
 
+from sonolube.charts import Line, Panel, Points
 from sonolube.errors import InvalidInput
+from sonolube.models.dynamics import Backbone
 from sonolube.rig import Rig, read_rig
-from sonolube.rig.response_curve import Jump, RigResponseCurve, rig_response_curve
+from sonolube.rig.response_curve import (
+    Jump,
+    RigResponseCurve,
+    response_curve_arrays,
+    response_curve_chart,
+    rig_response_curve,
+)
 from sonolube.rig.simulation import friction_point
 
 RIG = Path(__file__).parents[2] / "examples" / "rigs" / "contact_resonance.toml"
@@ -123,3 +132,91 @@ def test_voltage_folds_where_the_frequency_has_two_stable_vibrations(rig: Rig, c
 def test_what_has_no_curve_is_refused(changes: list[str], arguments: dict[str, float], message: str) -> None:
     with raises(InvalidInput, match=message):
         rig_response_curve(read_rig(RIG, changes=changes), **arguments)  # type: ignore[arg-type]
+
+
+NAN = float("nan")
+
+
+def folded(**changes: Any) -> RigResponseCurve:
+    """An S of six points along the frequency: up to 30 kHz, back to 20 kHz, and up again."""
+    made: dict[str, Any] = {
+        "along": "frequency",
+        "voltage_peak_to_peak": np.full(6, 8.0),
+        "frequency": 1e3 * np.array([10.0, 20.0, 30.0, 20.0, 25.0, 40.0]),
+        "vibration_amplitude": 1e-6 * np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
+        "friction_ratio": np.array([0.9, 0.8, 0.7, 0.6, 0.5, 0.4]),
+        "stable": np.array([True, True, False, False, True, True]),
+        "folds": np.array([2, 3]),
+        "rising": np.array([0, 1, 2, 5]),
+        "falling": np.array([0, 4, 5]),
+        "backbone": None,
+        "complete": True,
+    }
+    return RigResponseCurve(**made | changes)
+
+
+def parts_of(panel: Panel) -> dict[str, Line]:
+    return {part.label: part for part in panel.parts if isinstance(part, Line)}
+
+
+def test_a_branch_is_drawn_stable_and_unstable_without_a_gap_with_the_jumps_of_both_ramps(rig: Rig) -> None:
+    above, below = response_curve_chart(rig, folded()).panels
+    lines = parts_of(above)
+    assert list(lines) == ["stable", "unstable", "jump of a slow ramp up", "jump of a slow ramp down"]
+    assert lines["stable"].x == approx([10, 20, 30, 20, 25, 40])
+    assert lines["stable"].y == approx([1, 2, NAN, NAN, 5, 6], nan_ok=True)
+    assert lines["unstable"].y == approx([NAN, 2, 3, 4, 5, NAN], nan_ok=True)
+    assert (lines["stable"].dash, lines["unstable"].dash) == (0, 1)
+    # up from the third point to the last, down from the fifth to the first
+    up, down = lines["jump of a slow ramp up"], lines["jump of a slow ramp down"]
+    assert up.x == approx([30, 30, NAN], nan_ok=True)
+    assert up.y == approx([3, 6, NAN], nan_ok=True)
+    assert down.x == approx([25, 25, NAN], nan_ok=True)
+    assert down.y == approx([5, 1, NAN], nan_ok=True)
+    landed = [part for part in above.parts if isinstance(part, Points)]
+    assert [(float(each.x[0]), float(each.y[0])) for each in landed] == [approx((30, 6)), approx((25, 1))]
+    assert [(each.colour, each.marker) for each in landed] == [(1, 0), (2, 1)]
+    assert (up.colour, down.colour) == (1, 2)
+    assert (above.x.label, above.x.unit, above.x.lowest, above.x.highest) == ("Frequency", "kHz", 10.0, 40.0)
+    assert parts_of(below)["stable"].y == approx([0.9, 0.8, NAN, NAN, 0.5, 0.4], nan_ok=True)
+
+
+def test_a_branch_without_folds_or_friction_has_one_panel_and_the_backbone_within_its_range(rig: Rig) -> None:
+    backbone = Backbone(frequency=np.array([5e3, 10e3, 40e3, 41e3]), vibration_amplitude=1e-6 * np.arange(1.0, 5.0))
+    plain = folded(
+        stable=np.ones(6, dtype=bool),
+        rising=np.arange(6),
+        falling=np.arange(6),
+        friction_ratio=np.full(6, NAN),
+        backbone=backbone,
+    )
+    (panel,) = response_curve_chart(rig, plain).panels
+    lines = parts_of(panel)
+    assert list(lines) == ["backbone", "stable"]
+    assert lines["backbone"].x == approx([10, 40])
+    assert lines["backbone"].y == approx([2, 3])
+    volts = folded(along="voltage", voltage_peak_to_peak=np.array([0.0, 2.0, 4.0, 3.0, 5.0, 9.0]))
+    axis = response_curve_chart(rig, volts).panels[0].x
+    assert (axis.unit, axis.lowest, axis.highest) == ("V", 0.0, 9.0)
+
+
+def test_jumps_are_told_up_first_each_from_where_its_ramp_leaves_the_branch() -> None:
+    up, down = folded().jumps
+    assert (up.is_rising, down.is_rising) == (True, False)
+    assert (up.at, up.before, up.after) == approx((30e3, 3e-6, 6e-6))
+    assert (down.at, down.before, down.after) == approx((25e3, 5e-6, 1e-6))
+
+
+def test_arrays_of_a_branch_have_a_row_to_a_point_with_its_stability_in_words(rig: Rig) -> None:
+    arrays = response_curve_arrays(rig, folded())
+    assert arrays.variables["stability"].values.tolist() == [
+        "stable",
+        "stable",
+        "unstable",
+        "unstable",
+        "stable",
+        "stable",
+    ]
+    assert arrays.variables["frequency"].values == approx(folded().frequency)
+    assert arrays.variables["vibration_amplitude"].attrs["units"] == "m"
+    assert all(each.dims == ("point",) for each in arrays.variables.values())

@@ -26,7 +26,15 @@ from sonolube.models.friction import FRICTION_MODELS
 from sonolube.rig import Simulation, read_rig, rig_from, simulate, start_up
 from sonolube.rig.driven_rig import DriveVoltage, driven_rig, waveform_of
 from sonolube.rig.resolved_rig import resolved_rig
-from sonolube.rig.vibration import _from_rest, _same, _segments, contact_loss_fraction, steady_vibration
+from sonolube.rig.vibration import (
+    _from_rest,
+    _of_balance,
+    _of_march,
+    _same,
+    _segments,
+    contact_loss_fraction,
+    steady_vibration,
+)
 
 TRIBOMETER = Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml"
 COMPUTED = "vibration.amplitude_source=computed"
@@ -265,3 +273,105 @@ def test_a_march_says_how_its_drive_was_switched_on() -> None:
     assert _from_rest(drive) == "switched on at once,"
     slow = replace(drive, ramp_duration=0.2, ramp_shape="cosine")
     assert _from_rest(slow) == "with the voltage brought up by a cosine ramp of 200 ms,"
+
+
+def attained_motion(order: int, beat: float) -> Any:
+    """Two periods of 100 Hz in 8 steps each, with an elongation of 3 um that lags by 0.4 of a radian; closing samples.
+
+    The stack moves by half of what the first coordinate does, and the drive vector over the charge is a quarter.
+    """
+    time = np.arange(17) / 800
+    elongation = 3e-6 * np.cos(2 * np.pi * 100 * time - 0.4)
+    x = 1e-6 * np.cos(2 * np.pi * 50 * time)
+    return SimpleNamespace(
+        attractor=SimpleNamespace(
+            beat_frequency=beat, beat_amplitude=7e-9, order=order, kind="subharmonic", contact_loss_fraction=0.125
+        ),
+        record=SimpleNamespace(
+            time=time,
+            contact=SimpleNamespace(displacement=x, normal_force=3.0 + 1e6 * x),
+            states=SimpleNamespace(coordinates=np.stack([8 * elongation, 0 * time], axis=1)),
+        ),
+        amplitudes=np.array([1e-6, 2e-6, 6e-6]),
+        dissipated_power=0.25,
+        steps_per_period=8,
+        periods=2,
+    )
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_a_marched_motion_has_its_elongation_range_and_repetition(order: int) -> None:
+    rig: Any = SimpleNamespace(
+        drive=SimpleNamespace(frequency=100.0),
+        structure=SimpleNamespace(drive_vector=np.array([0.5, 9.0])),
+        stack=SimpleNamespace(charge_per_elongation=4.0),
+        normal_load=3.0,
+    )
+    resolved: Any = SimpleNamespace(vibration=SimpleNamespace(source="computed", text="by its parts"), separation=2e-6)
+    balanced: Any = SimpleNamespace(vibration_amplitude=np.float64(5e-6), status=Status.MULTISTABLE)
+    found = _of_march(resolved, rig, attained_motion(order, 12.0), balanced, "why")
+    assert found.elongation == approx(3e-6 * np.exp(-0.4j))
+    assert found.vibration_amplitude == approx(3e-6)
+    assert found.mean_displacement == approx(0.0, abs=1e-18)
+    assert (found.status, found.attractor, found.reason) == ("multistable", "subharmonic", "why")
+    assert found.coexisting_amplitude == approx(5e-6)
+    assert found.contact_loss_fraction == approx(0.125)
+    assert not found.gap_closed
+    (motion,) = found.motions
+    assert motion.displacement.size == 16
+    assert motion.normal_force == approx(3.0 + 1e6 * motion.displacement)
+    assert motion.frequency == approx(100.0 / order)
+    if order == 1:
+        assert (found.lowest_amplitude, found.highest_amplitude) == (None, None)
+        assert (found.beat_frequency, found.beat_amplitude) == (None, None)
+    else:
+        assert (found.lowest_amplitude, found.highest_amplitude) == approx((1e-6, 6e-6))
+        assert (found.beat_frequency, found.beat_amplitude) == approx((12.0, 7e-9))
+    resolved.separation = 1e-6
+    balanced.status = Status.UNSTABLE
+    closed = _of_march(resolved, rig, attained_motion(order, 0.0), balanced, "why")
+    assert closed.gap_closed
+    assert closed.coexisting_amplitude is None
+    assert closed.beat_frequency is None
+
+
+def test_cuts_lie_in_the_middle_of_their_beat_where_it_drifts() -> None:
+    # the widest gaps come every 640 steps, and from 1500 on 250 steps later: that at 1630 is less than half a beat on
+    n = np.arange(32 * 200 + 1)
+    late = np.where(n > 1500, n - 250, n)
+    found = segments(np.cos(2 * np.pi * (late - 100) / 640), marched(32, 200, 1000.0), 20e3)
+    assert [each.displacement.size for each in found[:4]] == [640, 640, 890, 640]
+
+
+def test_the_elongation_of_a_balanced_motion_is_the_charge_beyond_that_of_the_held_stack_over_its_charge_per_metre(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # q = C V + b x, from the current i = 2 pi i f q: C = 2 nF, V = 10 V, b = 4 C/m, x = 3 um e^(-0.3 i)
+    x = 3e-6 * np.exp(-0.3j)
+    charge = 2e-9 * 10.0 + 4.0 * x
+    states: Any = SimpleNamespace(
+        status=Status.PERIODIC,
+        vibration_amplitude=np.float64(2e-6),
+        coexisting_amplitude=np.float64(np.nan),
+        current_harmonics=np.array([2j * np.pi * 100.0 * charge, 9.0]),
+        voltage_harmonics=np.array([10.0 + 0j, 7.0]),
+        structure=SimpleNamespace(clamped_capacitance=2e-9),
+        mean_displacement=np.float64(1e-7),
+        contact_loss_fraction=np.float64(0.25),
+        dissipated_power=np.float64(0.5),
+        gap_closed=np.bool_(True),
+    )
+    rig: Any = SimpleNamespace(drive=SimpleNamespace(frequency=100.0), stack=SimpleNamespace(charge_per_elongation=4.0))
+    resolved: Any = SimpleNamespace(vibration=SimpleNamespace(source="computed", text="by its parts"))
+    monkeypatch.setattr("sonolube.rig.vibration.gap_motion", lambda states, point: ("motion", point))
+    found: Any = _of_balance(resolved, rig, states, "why")
+    assert found.elongation == approx(x)
+    assert (found.status, found.reason, found.prescribed) == ("periodic", "why", False)
+    assert (found.amplitude_source, found.amplitude_origin) == ("computed", "by its parts")
+    assert found.motions == (("motion", ()),)
+    assert (found.vibration_amplitude, found.mean_displacement) == approx((2e-6, 1e-7))
+    assert (found.contact_loss_fraction, found.dissipated_power) == approx((0.25, 0.5))
+    assert found.coexisting_amplitude is None
+    assert found.gap_closed
+    states.coexisting_amplitude = np.float64(5e-6)
+    assert _of_balance(resolved, rig, states, "why").coexisting_amplitude == approx(5e-6)

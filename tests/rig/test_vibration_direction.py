@@ -20,7 +20,7 @@ from sonolube.rig.contact_temperature import temperature_point, thermal_solid
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.rig.responses import simulation_arrays
 from sonolube.rig.vibration import steady_vibration
-from sonolube.rig.vibration_direction import NORMAL, SAME_DIRECTION, VibrationDirection
+from sonolube.rig.vibration_direction import NORMAL, SAME_DIRECTION, VibrationDirection, require_same_direction
 
 RIGS = Path("examples/rigs")
 BRISTLE, COULOMB, SPRINGS = (
@@ -342,3 +342,32 @@ def test_what_needs_the_motion_along_the_normal_refuses_and_says_what_to_do() ->
     rig = tribometer("vibration.direction=along", "vibration.amplitude_source=computed")
     with raises(InvalidInput, match=r"the vibration is along the sliding; use friction or simulate"):
         _ = resolved_rig(rig).moved
+
+
+@pytest.mark.parametrize(
+    ("direction", "components"),
+    [
+        (VibrationDirection(direction="normal"), (1, 0, 0)),
+        (VibrationDirection(direction="along"), (0, 1, 0)),
+        (VibrationDirection(direction="across"), (0, 0, 1)),
+        (VibrationDirection(direction="oblique", vibration_direction=np.pi / 6), (0, np.sqrt(3) / 2, 0.5)),
+        # a second one of a fifth, a quarter of a period late
+        (
+            VibrationDirection(
+                direction="normal", second_direction="along", second_fraction=0.2, second_phase=np.pi / 2
+            ),
+            (1, -0.2j, 0),
+        ),
+    ],
+)
+def test_components_of_a_direction_are_those_of_its_unit_vector(
+    direction: VibrationDirection, components: tuple[complex, complex, complex]
+) -> None:
+    assert direction.components() == approx(components)
+
+
+def test_runs_of_another_direction_than_their_rig_are_refused_by_their_words() -> None:
+    require_same_direction(frozenset({"normal"}), NORMAL, title="runs")
+    require_same_direction(frozenset(), NORMAL, title="runs")
+    with raises(InvalidInput, match=r"^runs: vibrates .*; leave out runs with the direction torsional$"):
+        require_same_direction(frozenset({"normal", "torsional"}), NORMAL, title="runs")

@@ -1,10 +1,13 @@
 """Map of previous studies: published numbers and axes."""
 
+from types import SimpleNamespace
+from typing import Any
+
 from pytest import approx
 
 from sonolube.charts import Line, Note, Panel, Points, Zone, draw_chart
 from sonolube.figure import publication_style
-from sonolube.validation.previous_study_map import StudyPoint, study_chart, study_points
+from sonolube.validation.previous_study_map import StudyPoint, _of_study, study_chart, study_points
 
 OWN = StudyPoint(
     label="own rig", direction="perpendicular", friction_reduction=0.5, sliding_speed=(0.05, 0.05), nominal_pressure=1e6
@@ -94,3 +97,44 @@ def test_an_additional_point_needs_speed_and_pressure() -> None:
     assert point.shades is not None
     assert point.shades.tolist() == approx([40.0])
     assert point.scale_ends == (0.0, 100.0)
+
+
+def test_speed_and_pressure_are_drawn_by_their_logarithms_and_what_is_not_stated_beside_them() -> None:
+    aside, known = study_chart(None).panels
+    assert known.x.logarithmic
+    assert known.y.logarithmic
+    assert (known.x.unit, known.y.unit) == ("m/s", "Pa")
+    assert not aside.x.logarithmic
+    assert not aside.y.logarithmic
+    assert (aside.x.lowest, aside.x.highest) == (-0.1, 1.0)
+    assert aside.y.highest == 0.5
+    unplaced = sum(isinstance(part, Note) for part in aside.parts)
+    assert aside.y.lowest == 0.5 - max(unplaced, 5)
+    for axis in (known.x, known.y):
+        assert axis.lowest is not None
+        assert axis.highest is not None
+        assert 0 < axis.lowest < axis.highest
+
+
+def test_a_study_notes_the_numbers_that_are_bounds_or_about_and_takes_the_others_as_they_are() -> None:
+    def number(quantity: str, relation: str, text: str) -> Any:
+        return SimpleNamespace(quantity=quantity, relation=relation, number=SimpleNamespace(text=text), unit="MPa")
+
+    numbers = (
+        number("nominal_pressure", "<", "2"),
+        number("nominal_pressure", "=", "3"),
+        number("wear_rate", ">", "4"),
+        number("normal_load", "~", "5"),
+    )
+    study: Any = SimpleNamespace(
+        study="Own", direction="along", section="1.2", references=(3, 4), numbers=numbers, number=lambda name: None
+    )
+    row = _of_study(study)
+    assert row == {
+        "study": "Own",
+        "direction": "along",
+        "source": "D 1.2, its references 3, 4",
+        "note": "nominal_pressure < 2 MPa; normal_load ~ 5 MPa",
+    }
+    study.number = {"normal_load": SimpleNamespace(value=2.5)}.get
+    assert _of_study(study)["normal_load"] == 2.5

@@ -12,11 +12,13 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 from pytest import approx
 from scipy.special import ellipk, i0e
+from scipy.stats import t as student
 
 from sonolube.charts import Points
 from sonolube.errors import InvalidInput
 from sonolube.rig import read_rig
 from sonolube.rig.resolved_rig import resolved_rig
+from sonolube.validation.assessment import Fit
 from sonolube.validation.comparison import compare_models, compared_models, predict_runs
 from sonolube.validation.figures import runs_fit_chart
 from sonolube.validation.run_conditions import run_conditions
@@ -248,3 +250,23 @@ def test_models_of_published_tests_predict_own_runs_without_a_fit() -> None:
     assert (exact.rms, exact.mean) == approx((0.05, 0.05))
     assert needs_contact.rms is None
     assert "roughness and materials" in (needs_contact.reason or "")
+
+
+def test_the_interval_of_a_fit_to_few_conditions_is_as_wide_as_students_of_its_degrees_of_freedom(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # n ln(1 + t^2/(n - p)) with the 97.5 % quantile t of n - p degrees of freedom, of n = 9 conditions and p parameters
+    amplitude, speed = conditions()
+    peak = 2 * np.pi * FREQUENCY * amplitude
+    told: list[tuple[int, float | None]] = []
+
+    def seen(fit: Fit, *given: object, largest_excess: float | None) -> tuple[()]:
+        told.append((len(fit.values), largest_excess))
+        return ()
+
+    monkeypatch.setattr("sonolube.validation.runs_fit.fitted_parameters", seen)
+    fit_runs(runs(across(speed, peak), amplitude, speed))
+    known = {count: excess for count, excess in told if excess is not None}
+    assert set(known) >= {1}
+    for count, excess in known.items():
+        assert excess == approx(9 * float(np.log1p(student.ppf(0.975, 9 - count) ** 2 / (9 - count))))

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+
 from reliability import decay_length_recordings as made
 
 Program = Callable[..., Any]

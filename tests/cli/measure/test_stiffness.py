@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pytest import approx
-from reliability import virtual_contact as virtual
 
+from reliability import virtual_contact as virtual
 from sonolube.cli import main
 
 RIG = Path(__file__).parents[3] / "examples" / "rigs" / "tribometer.toml"

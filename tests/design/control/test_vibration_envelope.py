@@ -1,9 +1,10 @@
 """Envelope of one mode against the admittance, the time march and the energy balance of the structure."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from pytest import approx
+from pytest import approx, raises
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
@@ -11,6 +12,7 @@ from sonolube.design.control import (
     FrictionCharacteristic,
     FrictionLoop,
     Process,
+    amplitude_mode,
     assumed_mode,
     mode_admittance,
     mode_at_drive,
@@ -18,6 +20,7 @@ from sonolube.design.control import (
     simulate_closed_loop,
     tuned_controller,
 )
+from sonolube.errors import InvalidInput
 from sonolube.models.contact import normal_stiffness, separation
 from sonolube.models.dynamics import LinearGap, electrical_admittance, march
 from sonolube.rig import read_rig, structure_in_contact
@@ -108,3 +111,18 @@ def test_an_assumed_mode_has_its_coupling_factor_between_series_and_parallel_res
     lower, upper = 25e3 * (1 + 1e-4), 25e3 * 1.02
     parallel = brentq(reactance, lower, upper)
     assert 1 - (25e3 / parallel) ** 2 == approx(0.1**2, rel=0.02)
+
+
+def test_an_assumed_mode_of_an_impossible_coupling_or_quality_is_refused() -> None:
+    rig = read_rig(RIGS / "collar.toml")
+    for coupling in (0.0, 5e-7, 1 - 5e-7, 1.0, 1.5, -0.2):
+        with raises(InvalidInput, match="coupling_factor"):
+            assumed_mode(rig, quality_factor=50.0, coupling_factor=coupling)
+    for coupling in (2e-6, 1 - 2e-6):
+        assert assumed_mode(rig, quality_factor=50.0, coupling_factor=coupling).damping_ratio == approx(0.01)
+    for quality in (0.0, 0.5):
+        with raises(InvalidInput, match="quality_factor"):
+            assumed_mode(rig, quality_factor=quality, coupling_factor=0.2)
+    assert amplitude_mode(rig, quality_factor=0.51).damping_ratio == approx(1 / 1.02)
+    with raises(InvalidInput, match=r"actuator\.capacitance is missing"):
+        assumed_mode(replace(rig, capacitance=None), quality_factor=50.0, coupling_factor=0.2)

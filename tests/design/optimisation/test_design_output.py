@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 import tomli_w
-from pytest import approx
+from numpy.typing import NDArray
+from pytest import MonkeyPatch, approx
 
-from sonolube.charts import Bars, Line, Note, Points, Rule
+from sonolube.charts import Band, Bars, Line, Note, Points, Rule
 from sonolube.design.optimisation import Candidate, DesignProblem, DesignSpace
 from sonolube.design.optimisation.design_output import (
     _envelope,
@@ -22,11 +23,13 @@ from sonolube.design.optimisation.design_output import (
     frequency_chart,
     front_chart,
     limits_chart,
+    power_factor_chart,
 )
+from sonolube.design.optimisation.drive_electronics import CAPACITANCE_TOLERANCE
 from sonolube.design.optimisation.evaluation import CONSTRAINTS, LIMITS, Evaluation
 from sonolube.design.optimisation.gradient_search import DesignPoint
 from sonolube.design.optimisation.screening import ScreeningResult
-from sonolube.models.actuator import catalogue_actuator
+from sonolube.models.actuator import MatchingNetwork, catalogue_actuator
 from sonolube.rig import read_rig, rig_content, rig_from, structure_entries
 from sonolube.rig.driven_rig import driven_rig
 
@@ -241,3 +244,48 @@ def test_a_file_without_an_actuator_or_a_vibration_gets_none() -> None:
     assert "vibration" not in found
     assert found["assumptions"] == {"drive": "optimised for a friction ratio of 0.44"}
     assert found["drive"]["frequency"] == "21500.0 Hz"
+
+
+def admittance(frequency: NDArray[np.float64], change: float = 0.0) -> NDArray[np.complex128]:
+    """Of a capacitor of 100 nF, off by a share of it, beside 50 ohm."""
+    return np.asarray(1 / 50 + 2j * np.pi * frequency * 100e-9 * (1 + change))
+
+
+def test_the_power_factor_about_the_drive_is_that_of_the_stack_alone_and_behind_each_network(
+    monkeypatch: MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(
+        "sonolube.design.optimisation.design_output.stack_admittance",
+        lambda rig, *, frequency, capacitance_change=0.0: admittance(frequency, capacitance_change),
+    )
+    coil = 1 / ((2 * np.pi * FIRST.frequency) ** 2 * 100e-9)
+    networks = tuple(
+        SimpleNamespace(network=MatchingNetwork(shunt_inductance=factor * coil), name=name)
+        for factor, name in ((1.0, "coil"), (2.0, "half"))
+    )
+    electric: Any = SimpleNamespace(networks=networks)
+    (panel,) = power_factor_chart(OPTIMUM, electric).panels
+    bare, coil_line, half_line = (part for part in panel.parts if isinstance(part, Line))
+    coil_band, half_band = (part for part in panel.parts if isinstance(part, Band))
+    drive = panel.parts[-1]
+    f = np.linspace(0.85, 1.15, 401) * FIRST.frequency
+    assert bare.x == approx(1e-3 * f)
+    assert bare.y == approx(admittance(f).real / np.abs(admittance(f)))
+    assert bare.dash == 3
+
+    def behind(inductance: float, change: float = 0.0) -> NDArray[np.float64]:
+        whole = admittance(f, change) + 1 / (2j * np.pi * f * inductance)
+        return np.asarray(whole.real / np.abs(whole))
+
+    assert coil_line.y == approx(behind(coil))
+    assert coil_line.y[200] == approx(1.0)  # the coil compensates the capacitor at the drive
+    assert half_line.y == approx(behind(2 * coil))
+    ends = [behind(coil, change) for change in np.linspace(-CAPACITANCE_TOLERANCE, CAPACITANCE_TOLERANCE, 9)]
+    assert coil_band.low == approx(np.min(ends, axis=0))
+    assert coil_band.high == approx(np.max(ends, axis=0))
+    assert (coil_band.label, half_band.label) == (f"capacitance off by up to {100 * CAPACITANCE_TOLERANCE:.0f} %", "")
+    assert [(part.colour, part.dash) for part in (coil_line, half_line)] == [(0, 0), (1, 1)]
+    assert isinstance(drive, Rule)
+    assert drive.value == approx(21.5)
+    assert (panel.x.lowest, panel.x.highest) == approx((0.85 * 21.5, 1.15 * 21.5))
+    assert (panel.y.lowest, panel.y.highest) == approx((0.0, 1.02))

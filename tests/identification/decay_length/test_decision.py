@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from pytest import raises
-from reliability import decay_length_recordings as made
 from tests.same import same
 
+from reliability import decay_length_recordings as made
 from sonolube.charts import Points, draw_chart
 from sonolube.errors import InvalidInput
 from sonolube.identification import (

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from reliability import decay_length_recordings as made
 
+from reliability import decay_length_recordings as made
 from sonolube.identification import SwitchConditions, SwitchTable
 from sonolube.identification.decay_length.run_model import (
     DIFFERENCE,

@@ -10,6 +10,7 @@ from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
 from sonolube.identification import SwitchTable, recorded_switches, switch_table
+from sonolube.identification.decay_length.recorded_switches import _unseen_current
 from sonolube.identification.decay_length.switch_table import is_switch_table
 from sonolube.measurement.measured_runs import read_runs
 
@@ -229,3 +230,24 @@ def test_a_load_that_is_never_positive_is_refused() -> None:
     data["normal_load"] = 0 * data["normal_load"]
     with raises(InvalidInput, match="normal_load must be positive while the pin slides"):
         recorded_switches(data, sliding_speed=SPEED, rotation_speed=0.41)
+
+
+@pytest.mark.parametrize(
+    ("mean", "rate", "seen"),
+    [(0.0, 1e3, False), (2.0, 1e3, True), (-2.0, 1e3, True), (0.0, 1e7, True)],
+    ids=["alternating", "rectified", "rectified, the other way", "sampled densely"],
+)
+def test_a_current_that_alternates_faster_than_its_samples_does_not_enter(mean: float, rate: float, seen: bool) -> None:
+    time = np.arange(400) / rate
+    current = mean + np.where(np.arange(400) % 2, 0.1, -0.1)
+    current[:3] = np.nan
+    recording = xr.Dataset(
+        {"stack_current": ("time", current), "frequency_set": ("time", np.full(400, 22e3))}, {"time": time}
+    )
+    assert (_unseen_current(recording, time) == ()) is seen
+    for missing in ("stack_current", "frequency_set"):
+        assert _unseen_current(recording.drop_vars(missing), time) == ()
+    if not seen:
+        assert _unseen_current(recording, time) == (
+            "stack_current at 1 kHz does not resolve the drive, and does not enter",
+        )

@@ -15,6 +15,7 @@ from sonolube.laboratory.catalogue.measured import (
     _cell,
     _conditions,
     _mean_of,
+    _recordings,
     _separate_levels,
     _steady_change,
     level_rows,
@@ -221,3 +222,33 @@ def test_of_a_folder_the_recordings_alone_are_taken_in_by_name(tmp_path: Path) -
     folder = take_in(tmp_path / "runs", old)
     assert read_run(folder).known.referenced == (str(old / "a.csv"), str(old / "b.csv"))
     assert read_run(folder).summary.title == "old"
+
+
+def test_recordings_of_a_folder_are_parts_in_the_order_of_their_names_however_the_disk_lists_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in "abc":
+        recording(tmp_path / f"{name}.csv", friction_force=np.full(500, 0.4))
+    listed = [tmp_path / f"{name}.csv" for name in "cab"]
+    monkeypatch.setattr(Path, "iterdir", lambda path: iter(listed))
+    assert _recordings(tmp_path) == sorted(listed)
+
+
+def test_a_stretch_of_one_voltage_is_not_searched_for_steps(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+
+    def steps(piece: xr.Dataset, *, rotation_speed: float | None) -> tuple[()]:
+        asked.append((piece.sizes["time"], rotation_speed))
+        return ()
+
+    monkeypatch.setattr("sonolube.laboratory.catalogue.measured.analyse_voltage_steps", steps)
+    monkeypatch.setattr("sonolube.laboratory.catalogue.measured.analyse_rotation_speed", lambda piece: 0.25)
+    run = run_of(tmp_path, [(SLIDES, 0.4)])
+    assert len(level_rows([run])[0]) == 2
+    assert asked == []
+    driven = run_of(tmp_path, [(SLIDES, 1.0), ({"voltage_peak_to_peak": 20.0, "frequency": 21e3}, 0.4)])
+    (_, *rows), _ = level_rows([driven])
+    assert asked == [(800, 0.25)]
+    # steps that are none leave the means of both levels
+    assert [row[4:6] for row in rows] == [["0.0", ""], ["20.0", "21000.0"]]
+    assert [float(row[6]) for row in rows] == approx([1.0, 0.4], abs=2e-3)

@@ -16,6 +16,7 @@ from sonolube.errors import InvalidInput, MissingPackage, SeveralFaults
 from sonolube.facts.protocol import protocol_by_name_or_file, protocol_from
 from sonolube.laboratory.drivers import device_map_schema, missing_parts, read_device_map, unfulfilled
 from sonolube.laboratory.drivers.daqmx_acquisition import tabulated_scale
+from sonolube.laboratory.drivers.device_map import _told
 
 TEXT = EXAMPLE.read_text(encoding="utf-8")
 LOADS = "normal_load.csv"
@@ -292,3 +293,18 @@ def test_all_that_is_beyond_the_devices_is_told_at_once_each_with_its_step_and_w
         f"step 5: the drive reaches 14 V; {name} gives at most 8 V",
         f"step 8: needs 3 1/s; {motor} turns at most at 0.1 1/s",
     ]
+
+
+def test_the_schema_of_a_role_with_several_drivers_is_one_of_their_sections() -> None:
+    sections = device_map_schema()["properties"]
+    assert len(sections["drive"]["oneOf"]) == 3
+    assert len(sections["acquisition"]["oneOf"]) == 2
+    assert "oneOf" not in json.dumps(sections["guard"])  # of one driver
+
+
+@pytest.mark.parametrize(("faults", "rest"), [(2, 0), (20, 0), (21, 1), (45, 25)])
+def test_twenty_faults_of_a_map_are_told_and_the_number_of_the_others(faults: int, rest: int) -> None:
+    told = _told([f"fault {number}" for number in range(faults)], [f"key {number}" for number in range(faults)])
+    assert len(told.faults) == len(told.keys) == faults - rest
+    assert told.rest == rest
+    assert told.faults[-1] == f"fault {faults - rest - 1}"

@@ -11,13 +11,17 @@ import event_model
 import numpy as np
 import pytest
 import xarray as xr
-from pytest import MonkeyPatch, approx
+from pytest import MonkeyPatch, approx, raises
 from tests.laboratory.records.clock import Clock
 from tests.laboratory.records.recorded import CHANNELS, RATE, begun, block_of, documents, recorded, values_of
 
 from sonolube.errors import InvalidInput
 from sonolube.laboratory.block import Block
 from sonolube.laboratory.records import RunRecorder, new_run, read_run, recover_run, run_folders, run_summary
+from sonolube.laboratory.records.documents import DocumentLog
+from sonolube.laboratory.records.raw_blocks import RawPart, read_raw_blocks
+from sonolube.laboratory.records.recovery import OpenPart
+from sonolube.laboratory.records.run_folder import RunFacts, raw_path
 
 LargestFile = Callable[[int], AbstractContextManager[None]]
 
@@ -282,3 +286,31 @@ def test_damaged_facts_of_one_run_leave_the_others_listed(tmp_path: Path) -> Non
     assert sorted(run_summary(folder).outcome for folder in run_folders(tmp_path)) == ["completed", "failed"]
     with pytest.raises(InvalidInput, match="is damaged"):
         read_run(folder)
+
+
+def test_a_run_has_room_for_its_last_documents_until_it_is_finished(tmp_path: Path) -> None:
+    recorder = begun(tmp_path)
+    reserve = recorder.folder / ".reserve"
+    assert reserve.stat().st_size == 64 * 1024
+    recorder.append(block_of(0, 50))
+    assert reserve.exists()
+    recorder.finish("completed")
+    assert not reserve.exists()
+
+
+def test_blocks_of_a_part_are_counted_with_their_samples(tmp_path: Path) -> None:
+    log = DocumentLog(tmp_path)
+    log.start(RunFacts(title="", begun=1.8e9, facts={}, versions={}, files={}))
+    raw_path(tmp_path, 1).parent.mkdir()
+    part = OpenPart(tmp_path, 1, RawPart(channels=CHANNELS, sample_rate=RATE, begun=1.8e9), log)
+    gaps: list[tuple[int, object]] = []
+    for first, size in ((0, 3), (3, 1), (6, 2)):
+        part.append(block_of(first, size), lambda sample, known: gaps.append((sample, known)))
+    part.close()
+    part.close()
+    assert (part.part.blocks, part.part.samples) == (3, 6)
+    assert gaps == [(4, {"missing": 2})]
+    assert [block.first_sample for block in read_raw_blocks(raw_path(tmp_path, 1))] == [0, 3, 6]
+    with raises(InvalidInput, match="block begins at sample 5, but 8 was expected"):
+        part.require_fitting(block_of(5, 1))
+    part.require_fitting(block_of(8, 1))

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 from pytest import approx, mark, raises
-from reliability import virtual_contact as virtual
 
+from reliability import virtual_contact as virtual
 from sonolube.checks import Complexes, Floats
 from sonolube.errors import InvalidInput
 from sonolube.measurement.contact_stiffness.resonance_fit import fit_resonances

@@ -2,8 +2,8 @@
 
 import numpy as np
 from pytest import approx, raises
-from reliability import virtual_contact as virtual
 
+from reliability import virtual_contact as virtual
 from sonolube.errors import InvalidInput
 from sonolube.measurement.contact_stiffness.analysis import MeasuredContactStiffness, measured_contact_stiffness
 from sonolube.measurement.contact_stiffness.resonance_fit import Resonance

@@ -4,6 +4,7 @@ import struct
 import warnings
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -185,3 +186,16 @@ def test_among_many_channels_one_of_each_length_is_listed(tmp_path: Path) -> Non
     scipy.io.savemat(tmp_path / "many.mat", content)
     with raises(InvalidInput, match=r"\(c0 5, odd 6 and 39 more\)"):
         read_recording(tmp_path / "many.mat")
+
+
+@pytest.mark.parametrize(
+    ("given", "reason"),
+    [({"gain": float("nan")}, "gain must be finite"), ({"gain": float("inf")}, "gain must be finite"),
+     ({"offset": float("nan")}, "offset must be finite"), ({"gain": 0.0}, "gain of column 'F' must not be zero"),
+     ({"unit": 3}, "unit must be text, got 3")],
+)  # fmt: skip
+def test_a_column_without_a_finite_gain_and_offset_is_refused(given: dict[str, Any], reason: str) -> None:
+    with pytest.raises(InvalidInput, match=reason):
+        ChannelSource(column="F", **given)
+    whole = ChannelSource(column="F", gain=-2.0, offset=0.5, other_columns=("G",))
+    assert whole.labels == ("F", "G")

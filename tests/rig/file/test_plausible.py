@@ -5,11 +5,13 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
+import numpy as np
 import pytest
-from pytest import raises
+from pytest import approx, raises
 
 from sonolube.errors import InvalidInput, OutsideRange, SonolubeError
 from sonolube.rig import read_rig, simulate
+from sonolube.rig.file.section import LIMITS, require_plausible
 from sonolube.vocabulary import quantities
 
 RIGS = sorted((Path(__file__).parents[3] / "examples" / "rigs").glob("*.toml"))
@@ -60,3 +62,22 @@ def test_a_ramp_of_a_day_is_refused_where_it_would_be_marched() -> None:
     beating = ["contact.normal_load=61.209N", "drive.frequency=22436.58Hz", "drive.voltage_peak_to_peak=149.83V"]
     with raises(InvalidInput, match=r"a ramp of 86400 s is \d+ periods of the drive, too many to march"):
         simulate(read_rig(TRIBOMETER, changes=[*beating, "drive.ramp_duration=24h"]))
+
+
+@pytest.mark.parametrize("unit", LIMITS)
+def test_the_ends_of_what_a_rig_may_have_are_whole_powers_of_ten_and_still_accepted(unit: str) -> None:
+    for sign, end in ((-1, LIMITS[unit][0]), (1, LIMITS[unit][1])):
+        power = round(np.log10(end))
+        assert end == approx(10.0**power, rel=1e-12)
+        assert require_plausible(end, unit=unit, text="value") == end
+        assert require_plausible(-end, unit=unit, text="value") == -end
+        with raises(InvalidInput, match="value lies beyond any rig: expected"):
+            require_plausible(end * 1.01**sign, unit=unit, text="value")
+    assert require_plausible(0.0, unit=unit, text="value") == 0.0
+
+
+def test_a_unit_without_ends_takes_any_number_but_the_absurd() -> None:
+    assert require_plausible(1e29, unit="A", text="value") == 1e29
+    for value in (1e-31, -1e31):
+        with raises(InvalidInput, match="beyond any rig"):
+            require_plausible(value, unit="A", text="value")

@@ -2,12 +2,13 @@
 
 import contextlib
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import given, strategies as st
-from pytest import approx
+from pytest import approx, raises
 from tests.tiers import examples
 
 from sonolube.errors import InvalidInput
@@ -16,11 +17,14 @@ from sonolube.rig import (
     contact_point,
     friction_point,
     read_rig,
+    rig_content,
     rig_from,
     rig_schema,
     steady_vibration,
+    structure_entries,
     wear_point,
 )
+from sonolube.rig.file.reader import structure_by_stack
 from sonolube.rig.file.toml_file import tables_of
 
 RIGS = Path(__file__).parents[3] / "examples" / "rigs"
@@ -230,3 +234,33 @@ def test_whatever_stands_in_a_rig_file_gives_a_rig_or_one_clear_line(data: st.Da
         rig = rig_from(content)
         assert isinstance(rig, Rig)
         friction_point(rig)
+
+
+def test_entries_of_a_pin_on_disc_chain_are_in_si_and_another_structure_has_none() -> None:
+    content = rig_content(RIGS / "tribometer.toml")
+    entries = structure_entries(content)
+    assert entries["tip_mass"] == approx(0.1093)
+    assert entries["arm_stiffness"] == approx(4.56e5)
+    with raises(InvalidInput, match="structure: missing; give the tables stack and structure"):
+        structure_entries(rig_content(RIGS / "cutter_head.toml"))
+
+
+def test_the_structure_about_a_stack_takes_another_stack() -> None:
+    rig = read_rig(RIGS / "tribometer.toml")
+    stack, in_structure = structure_by_stack(rig)
+    assert rig.stack is not None
+    assert rig.structure is not None
+    assert stack == rig.stack
+    assert in_structure(stack).stiffness_matrix == approx(rig.structure.stiffness_matrix)
+    softer = in_structure(replace(stack, stack_stiffness=0.5 * stack.stack_stiffness, coupling_factor=None))
+    assert softer.stiffness_matrix[0, 0] == approx(0.5 * rig.structure.stiffness_matrix[0, 0], rel=1e-3)
+    with raises(InvalidInput, match="the tables stack and structure are missing"):
+        structure_by_stack(read_rig(RIGS / "cutter_head.toml"))
+
+
+def test_a_rig_is_called_by_its_file_or_by_the_plain_characters_of_its_title() -> None:
+    rig = read_rig(RIGS / "tribometer.toml", changes=["drive.frequency=21kHz"])
+    assert (rig.name, rig.file, rig.changes) == ("tribometer", RIGS / "tribometer.toml", ("drive.frequency=21kHz",))
+    made = rig_from(dict(rig.content()) | {"title": "My Rig: No. 2 (ä)"})
+    assert (made.file, made.changes, made.name) == (None, (), "my-rig-no-2-ä")
+    assert rig_from(dict(rig.content()) | {"title": "?!"}).name == "rig"

@@ -10,9 +10,10 @@ from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
 from sonolube.facts.materials import yield_strength_from_hardness
-from sonolube.rig import Rig, read_rig, rig_from
+from sonolube.rig import Rig, read_rig, rig_content, rig_from
 from sonolube.text.units import to_si
 
+RIGS = Path(__file__).parents[3] / "examples" / "rigs"
 STATED = """
 title = "a"
 source = "b"
@@ -142,3 +143,24 @@ def test_a_file_of_numbers_is_read_as_it_stands() -> None:
     content: dict[str, Any] = tomllib.loads(path.read_text(encoding="utf-8"))
     assert dict(read_rig(path).assumptions) == content["assumptions"]
     assert set(read_rig(path).uncertainty) == set(content["uncertainty"])
+
+
+def test_a_contact_has_either_both_bodies_or_their_pair() -> None:
+    bodies = rig_content(RIGS / "cutter_head.toml")
+    pair = rig_content(RIGS / "tribometer.toml")["contact"]["pair"]
+    softer, harder = (bodies["contact"][name] for name in ("softer", "harder"))
+    others = {key: value for key, value in bodies["contact"].items() if key not in ("softer", "harder", "pair")}
+    rig_from(bodies | {"contact": others | {"softer": softer, "harder": harder}})
+    for tables in (
+        {},
+        {"softer": softer},
+        {"harder": harder},
+        {"softer": softer, "pair": pair},
+        {"harder": harder, "pair": pair},
+        {"softer": softer, "harder": harder, "pair": pair},
+    ):
+        with raises(InvalidInput, match=r"give either both tables contact\.softer and contact\.harder, or the table"):
+            rig_from(bodies | {"contact": others | tables})
+    named = [dict(body) | {"role": "pin"} for body in (softer, harder)]
+    with raises(InvalidInput, match=r'softer\.role and harder\.role are both "pin"; give one of them'):
+        rig_from(bodies | {"contact": others | {"softer": named[0], "harder": named[1]}})

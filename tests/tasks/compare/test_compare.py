@@ -1,5 +1,6 @@
 """Comparison, fit and earlier studies by stand-ins of their results: what is shown, with which caveats and files."""
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,6 +12,7 @@ from sonolube.report.blocks import Table
 from sonolube.tasks.compare import compare, literature
 from sonolube.tasks.compare.compare import ComparisonAnswer, FitAnswer
 from sonolube.tasks.compare.literature import LiteratureAnswer
+from sonolube.tasks.files import NamedBytes
 from sonolube.validation.previous_study_map import StudyPoint
 
 RIG: Any = SimpleNamespace(title="Own rig", assumptions={})
@@ -135,3 +137,22 @@ def test_points_of_an_own_table_are_listed_and_what_was_left_out_is_a_caveat(mon
     outside()
     assert drawn == [(point(), (point("x"),)), (None, ())]
     assert list(answer.files()) == ["studies.csv"]
+
+
+def test_a_table_of_studies_is_called_by_its_name_or_path_and_a_rig_is_placed_among_them(
+    monkeypatch: MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(literature, "runs_of", lambda table, mapping: None if table is None else (table, mapping))
+    monkeypatch.setattr(literature, "studies_of_runs", lambda runs, *, title: ((point(title),), (f"of {title}",)))
+    monkeypatch.setattr(literature, "optional_rig", lambda rig: rig)
+    monkeypatch.setattr(names_of(literature).results, "point_of_rig", lambda rig: (point(rig.title), "outside"))
+    plain = literature.literature()
+    assert (plain.rig, plain.point, plain.outside, plain.others, plain.skipped) == (None, None, None, (), ())
+    assert plain.studies
+    by_bytes = literature.literature(table=NamedBytes("mine.csv", b""))
+    assert [each.label for each in by_bytes.others] == ["mine.csv"]
+    assert by_bytes.skipped == ("of mine.csv",)
+    by_path = literature.literature(RIG, table=tmp_path / "mine.csv")
+    assert [each.label for each in by_path.others] == [str(tmp_path / "mine.csv")]
+    assert by_path.point is not None
+    assert (by_path.rig, by_path.point.label, by_path.outside) == (RIG, "Own rig", "outside")

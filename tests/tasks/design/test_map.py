@@ -2,15 +2,18 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from pytest import raises
+from tests.names import names_of
 from tests.same import same
 
 import sonolube as sl
 from sonolube.errors import InvalidInput, UnknownName
+from sonolube.tasks.design import map as module
 from sonolube.tasks.design.map import map as map_of
 from sonolube.tasks.files import NamedBytes
 
@@ -61,3 +64,22 @@ def test_arguments_are_refused_by_their_names(rig: sl.Rig) -> None:
         map_of(rig, form=["pgn"])  # type: ignore[list-item]
     with raises(InvalidInput, match=r"^over drive\.frequency: no axis of a velocity-power map"):
         map_of(rig, over={"drive.frequency": [1e3, 2e3]})
+
+
+def test_the_map_between_runs_is_drawn_with_the_runs_on_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn: list[tuple[Any, ...]] = []
+    monkeypatch.setattr(module, "measured_map_chart", lambda *given: drawn.append(given))
+    monkeypatch.setattr(module, "map_chart", lambda mapped, *, measured: drawn.append((mapped, measured)))
+    monkeypatch.setattr(names_of(module).results, "caption", lambda mapped, *, has_runs: f"with runs {has_runs}")
+    mapped = SimpleNamespace(attrs={"map": "velocity-power"})
+    given: dict[str, Any] = {"rig": SimpleNamespace(name="own"), "mapped": mapped, "forms": ("html", "png")}
+    both = module.MapAnswer(**given, runs="runs", interpolated="between")  # type: ignore[arg-type]
+    for figure in both.figures().values():
+        assert figure.chart is not None
+        assert figure.forms == ("png",)
+        figure.chart()
+    assert drawn == [(mapped, "runs"), ("between", "runs")]
+    assert list(both.figures()) == ["own-velocity-power", "own-velocity-power-measured"]
+    without = module.MapAnswer(**given, runs=None, interpolated=None)
+    (figure,) = without.figures().values()
+    assert figure.caption == "with runs False"

@@ -66,3 +66,29 @@ def test_a_schema_is_json_as_text() -> None:
     answer = schema("devices")
     assert json.loads(str(answer)) == answer.object()
     assert "<pre>" in answer._repr_html_()
+
+
+def test_one_entry_is_shown_with_its_source_and_all_as_a_list() -> None:
+    one, every = str(actuators("sa050510")), str(actuators())
+    assert one.startswith("sa050510: ")
+    assert "source:" in one
+    assert every.splitlines()[0].endswith("actuators on the market, by their data sheets")
+    assert "sa050510" in every
+    one, every = str(materials("aluminium_2024")), str(materials())
+    assert one.startswith("aluminium_2024: ")
+    assert "73 GPa" in one
+    assert every.splitlines()[0].endswith("materials, piezo ceramics and classes of materials, by family")
+
+
+def test_the_object_of_one_entry_is_that_in_the_list_of_all() -> None:
+    same(materials().object()["aluminium_2024"], materials("aluminium_2024").object())
+    same(actuators().object()["sa050510"], actuators("sa050510").object())
+    assert set(published().object()) >= {"2.5", "3.4"}
+    assert str(published()).splitlines()[0] == "Tables of the dissertation"
+
+
+def test_every_entry_of_a_list_is_on_the_axis_of_its_dataset() -> None:
+    data = actuators().dataset()
+    assert set(data["actuator"].values) == set(actuators().object())
+    assert actuators("sa050510").dataset()["stroke"].size == 1
+    assert set(materials().dataset()["material"].values) == set(materials().object())

@@ -13,8 +13,11 @@ from tests.same import same
 
 from sonolube.cli import main
 from sonolube.errors import InvalidInput, SonolubeError, UnknownName
+from sonolube.report import Drawing
+from sonolube.report.measured.sheet import Figure, Sheet
 from sonolube.tasks import measure
 from sonolube.tasks.files import NamedBytes
+from sonolube.tasks.measure.measured_files import MeasuredFiles, column_mapping
 from sonolube.tasks.progress import TaskCancelled
 
 ROOT = Path(__file__).parents[3]
@@ -256,3 +259,24 @@ def test_progress_is_reported_for_each_file_and_a_measurement_can_be_cancelled(r
     assert told == [("measuring: friction.csv", 0, 2), ("measuring: friction.csv", 1, 2)]
     with raises(TaskCancelled):
         measure.friction(recording, cancelled=lambda: True)
+
+
+def test_figures_are_called_by_their_title_and_of_several_files_by_their_file_too() -> None:
+    def sheet(title: str) -> Sheet:
+        return Sheet(title=title, figures=(Figure(title="Trace", drawing=Drawing(chart=None, caption="", forms=())),))
+
+    one, two = (MeasuredFiles(title="t", sheets=[sheet(f) for f in files], refused={}) for files in (["a"], ["a", "b"]))
+    assert list(one.figures()) == ["Trace"]
+    assert list(two.figures()) == ["a: Trace", "b: Trace"]
+    assert one.has_result
+    assert not MeasuredFiles(title="t", sheets=[], refused={"a": "no"}).has_result
+
+
+def test_parts_of_a_recording_are_chosen_beside_the_mapping_of_its_columns() -> None:
+    assert column_mapping(None) is None
+    chosen = column_mapping(None, group="G", channels=("a", "b"), sections=("1",))
+    assert chosen is not None
+    assert (chosen.selection.group, chosen.selection.channels, chosen.selection.sections) == ("G", ("a", "b"), ("1",))
+    assert dict(chosen.channels) == {}
+    for given in ({"group": "G"}, {"channels": ("a",)}, {"sections": ("1",)}):
+        assert column_mapping(None, **given) is not None

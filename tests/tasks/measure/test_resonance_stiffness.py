@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pytest import CaptureFixture, approx, raises
-from reliability import virtual_contact as virtual
 from tests.same import same
 
+from reliability import virtual_contact as virtual
 from sonolube.cli import main
 from sonolube.errors import InvalidInput
 from sonolube.rig import read_rig
