@@ -6,7 +6,7 @@ from typing import Final, Literal
 
 from sonolube.laboratory.devices import DeviceError, DeviceLost, DriveSetting, DriveSource
 from sonolube.laboratory.drivers.entry import DriveEntry, DriveLimits
-from sonolube.laboratory.drivers.scpi_instruments import CHECKED, CheckEntry, ReplyEntry, require_set
+from sonolube.laboratory.drivers.scpi_instruments import CHECKED, CheckEntry, ReplyEntry, require_set, require_state
 from sonolube.laboratory.drivers.visa_connection import SwitchedLine, VisaConnection, VisaLineEntry
 from sonolube.text.units import format_si
 
@@ -85,7 +85,7 @@ class FunctionGenerator(SwitchedLine):
             require_set(name, found=_NUMBER.number(answer, device=self.name), wanted=wanted, device=self.name)
             told.append(f"{query} {answer}")
         on = self._set.get("output") == "on"
-        line.ask_for(f"{self._output}?", *(("1", "ON") if on else ("0", "OFF")))
+        require_state(line, f"{self._output}?", ("1", "ON") if on else ("0", "OFF"))
         known = {check.of for check in self._checks}
         missing = ", ".join(each.replace("_", " ") for each in CHECKED if each not in known)
         state = f"output {'on' if on else 'off'}"

@@ -191,6 +191,13 @@ def require_set(name: str, *, found: float, wanted: float, device: str) -> None:
         raise DeviceError(f"{device}: has the {name} {has} where {was} was set")
 
 
+def require_state(line: VisaConnection, query: str, states: Sequence[str]) -> None:
+    """Raise DeviceError where an output answers at once, up to a comma, with another state than one of those."""
+    heard = line.ask(query)
+    if heard.partition(",")[0] not in states:
+        raise DeviceError(f"{line.name}: answers {heard[:80]!r} to {query!r}; expected {states[0]!r}")
+
+
 _LATE_PERIODS: Final = 1.0  # by which a query may begin late
 
 

@@ -17,6 +17,7 @@ from sonolube.laboratory.drivers.scpi_instruments import (
     ScpiEntry,
     require_identity,
     require_set,
+    require_state,
     send,
 )
 from sonolube.laboratory.drivers.visa_connection import SwitchedLine, VisaConnection
@@ -203,7 +204,7 @@ class ScpiSource(SwitchedLine):
         line, state = self._line, self._entry.state
         told = [f"{check.query} {check.require(line)}" for check in self._entry.checks]
         told += self._values()
-        self._require_state(line, state.on if self._is_on else state.off)
+        require_state(line, state.query, [state.on if self._is_on else state.off])
         return "; ".join(dict.fromkeys([*told, f"output {'on' if self._is_on else 'off'}"]))
 
     def _values(self) -> list[str]:
