@@ -77,6 +77,7 @@ TESTED_ELSEWHERE = {
     ("identify rig", "--seed"),
     ("lab run", "--anyway"),
     ("lab run", "--fact"),
+    ("lab run", "--no-self-test"),
     ("lab recover", "--drop-blocks"),
 }
 

@@ -11,6 +11,7 @@ from pytest import MonkeyPatch, approx, raises
 from tests.cli.conftest import Program
 from tests.laboratory import rig_stand_ins
 from tests.laboratory.rig_stand_ins import analogue_rig
+from tests.names import names_of
 from tests.same import same
 
 from sonolube.errors import InvalidInput, UnknownName
@@ -20,6 +21,7 @@ from sonolube.laboratory.records import Run, read_run, run_folders
 from sonolube.rig import read_rig
 from sonolube.tasks import lab
 from sonolube.tasks.files import NamedBytes
+from sonolube.tasks.lab import protocol_run
 from sonolube.tasks.lab.protocol_run import RunAnswer
 from sonolube.tasks.progress import TaskCancelled
 
@@ -286,3 +288,26 @@ def test_a_virtual_thermocouple_is_where_its_protocol_says(tmp_path: Path) -> No
     assert rises["actuator"] == approx(0.0, abs=0.05)  # K; nothing warms the actuator
     assert flash > 2.0
     assert rises["contact"] == approx(flash, abs=0.5)  # and the pin, which warms slowly
+
+
+def test_set_and_measured_are_compared_on_devices_unless_that_is_left_out(
+    tmp_path: Path, monkeypatch: MonkeyPatch
+) -> None:
+    compared: list[bool] = []
+    original = names_of(protocol_run).run_protocol
+
+    def noted(*given: Any, self_test: bool, **named: Any) -> Any:
+        compared.append(self_test)
+        return original(*given, self_test=self_test, **named)
+
+    monkeypatch.setattr(protocol_run, "run_protocol", noted)
+    text = NamedBytes("warm.toml", WARM.format(place="actuator").replace('"4 s"', '"0.5 s"').encode())
+    with analogue_rig(tmp_path) as rig:
+        monkeypatch.setattr(protocol_run, "ready_devices", lambda path: rig.devices)
+        for no_self_test in (False, True):
+            found = lab.run(text, tmp_path / "devices.toml", no_self_test=no_self_test, yes=True, out=tmp_path / "runs")
+            assert isinstance(found, RunAnswer)
+            assert found.run.facts.get("self_test") == ("left out" if no_self_test else None)
+    assert compared == [True, False]
+    with raises(InvalidInput, match="no_self_test has no meaning with device_map virtual"):
+        lab.run(text, rig=RIG, no_self_test=True, out=tmp_path / "runs")

@@ -282,6 +282,8 @@ def run(
     if not anyway:
         _require_possible_dry(read, known)
     file = device_file(device_map)
+    if file is None:
+        refuse_unused("no_self_test", because=f"with {shown('device_map')} virtual, which is not tested so")
     facts = facts_of(fact or {})
     plan = RunPlan(protocol=read, name=Path(path).stem, rig=known, device_file=file, seed=seed, tags=tag, facts=facts)
     simulated = _virtual_rig(plan, real_time=real_time) if file is None else None
