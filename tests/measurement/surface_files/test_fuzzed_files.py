@@ -1,11 +1,13 @@
 """Damaged surface files are read or refused with one line that names the file."""
 
+import gc
 import random
 import tempfile
 import warnings
 from collections import Counter
 from pathlib import Path
 
+import numpy as np
 from hypothesis import given, strategies as st
 from pytest import mark
 from reliability.damage import mutated
@@ -75,3 +77,12 @@ def test_any_bytes_are_read_or_refused_as_a_surface(content: bytes, suffix: str)
 def test_any_text_is_read_or_refused(text: str) -> None:
     with tempfile.TemporaryDirectory() as folder:
         outcome(text.encode(), Path(folder) / "input.xyz")
+
+
+def test_an_archive_under_the_name_of_a_matrix_is_refused_and_closed(tmp_path: Path) -> None:
+    path = tmp_path / "input.npy"
+    for content in (b"PK\x03\x04 is the beginning of an archive", b"PK\x05\x06" + bytes(18)):
+        assert outcome(content, path) == "refused"
+    np.savez(tmp_path / "input.npz", heights=np.eye(3))
+    assert outcome((tmp_path / "input.npz").read_bytes(), path) == "refused"
+    gc.collect()  # what was left open would be told now

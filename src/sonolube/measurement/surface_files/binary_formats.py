@@ -306,7 +306,7 @@ class Npy:
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # about headers of old versions
-                mapped = np.load(path, mmap_mode="r", allow_pickle=False)
+                mapped = np.lib.format.open_memmap(path, mode="r")  # np.load leaves archives under this name open
                 is_matrix = mapped.ndim == 2 and mapped.dtype.kind in "fiu"
                 height = np.array(mapped, dtype=np.float64) if is_matrix else None
         except Exception as failure:  # numpy evaluates the header, which raises exceptions of any type
