@@ -77,7 +77,7 @@ class SwitchOffProcess:
             link.close()
             with suppress(subprocess.TimeoutExpired):
                 process.wait(_ENDING)
-            _end(process)
+            _end(process, link)
 
     def watch(self) -> None:
         """Raise DeviceLost where the process has ended or gives no sign of life."""
@@ -178,8 +178,8 @@ class SwitchOffProcess:
             if self._not_off is not None:
                 return
             fault = self._fault
-            if self._process is not None:
-                _end(self._process)
+            if self._process is not None and self._link is not None:
+                _end(self._process, self._link)
             self._fault = ""
             try:
                 self._start(takes_over=fault)
@@ -215,12 +215,14 @@ class SwitchOffProcess:
             self._process.kill()
 
 
-def _end(process: "subprocess.Popen[bytes]") -> None:
-    """End a process at once where it still lives, and close the pipes to it."""
+def _end(process: "subprocess.Popen[bytes]", link: Link) -> None:
+    """End a process at once where it still lives, and close the pipes to it, which no thread uses any more."""
+    link.close()
     process.kill()
     with suppress(subprocess.TimeoutExpired):  # of one that the system cannot end
         process.wait(_DYING)
-    for stream in (process.stdin, process.stdout):
+    is_read = not link.has_ended.wait(_DYING)  # by a thread that would go on with another file of that number
+    for stream in (process.stdin, None if is_read else process.stdout):
         if stream is not None:
             with suppress(OSError):
                 stream.close()

@@ -33,7 +33,7 @@ class Link:
 
     def __init__(self, incoming: int, outgoing: int) -> None:
         self.incoming, self.outgoing = incoming, outgoing
-        self._lock, self._closed = Lock(), Event()
+        self._lock, self._closed, self.has_ended = Lock(), Event(), Event()
         self._heard = time.monotonic()
 
     @property
@@ -45,6 +45,8 @@ class Link:
         """Send a message; one that nobody hears is dropped, for its sender hears no answer."""
         line = json.dumps(message).encode() + b"\n"
         with self._lock:
+            if self._closed.is_set():
+                return
             try:
                 while line:
                     line = line[os.write(self.outgoing, line) :]
@@ -60,8 +62,9 @@ class Link:
         Thread(target=self._beat, daemon=True, name="sonolube beat").start()
 
     def close(self) -> None:
-        """Beat no more."""
-        self._closed.set()
+        """Send nothing more, not even a beat: the handle may be another file's after this."""
+        with self._lock:
+            self._closed.set()
 
     def _listen(self, take: Callable[[Message], object], ended: Callable[[], object]) -> None:
         rest = b""
@@ -77,6 +80,7 @@ class Link:
             for message in map(_content, lines):
                 if message:
                     take(message)
+        self.has_ended.set()
         ended()
 
     def _beat(self) -> None:

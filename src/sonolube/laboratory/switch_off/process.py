@@ -10,7 +10,6 @@ import json
 import os
 import signal
 import sys
-import tempfile
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -32,6 +31,7 @@ _RETURNING: Final = 2.0  # s, for a setting that is at work when the outputs are
 _RELEASING: Final = 8.0  # s, for a call that switches off or releases
 _SWITCHING: Final = 10.0  # s
 _TRYING: Final = 0.5  # s, between two attempts to connect to an instrument that the ended call may still hold
+_PIECE: Final = 60_000  # characters of an argument, of which systems take 128 KiB
 _DYING: Final = 2.0  # s, for the program of a run that was killed
 
 _IGNORED: Final = ("HUP", "INT", "QUIT", "TERM", "TSTP", "TTIN", "TTOU", "PIPE", "USR1", "USR2", "ALRM", "BREAK")
@@ -43,14 +43,12 @@ def main() -> None:
         if hasattr(signal, f"SIG{name}"):
             signal.signal(getattr(signal, f"SIG{name}"), signal.SIG_IGN)
     if len(sys.argv) > 1:
-        incoming, outgoing, kept = map(int, sys.argv[1:])
-        with os.fdopen(kept, "rb") as file:
-            given = json.loads(file.read())
-        link = Link(incoming, outgoing)
+        link, given = Link(int(sys.argv[1]), int(sys.argv[2])), json.loads("".join(sys.argv[3:]))
     else:
         link, given = Link(os.dup(0), os.dup(1)), {}
-        null = os.open(os.devnull, os.O_RDWR)
-        os.dup2(null, 0)
+        nothing, writer = os.pipe()
+        os.close(writer)
+        os.dup2(nothing, 0)  # a driver that reads standard input finds its end
         os.dup2(2, 1)  # what a driver prints is no message
     try:
         _Server(link, given).serve()
@@ -236,14 +234,11 @@ class _Server:
         Windows cannot replace a program.
         """
         given = self._given | {"takes_over": self._said_at_work(), "alone": alone}
-        kept = tempfile.TemporaryFile()  # noqa: SIM115  handed on
-        kept.write(json.dumps(given).encode())
-        kept.flush()
-        kept.seek(0)
-        handles = (self._link.incoming, self._link.outgoing, kept.fileno())
+        handles, text = (self._link.incoming, self._link.outgoing), json.dumps(given)
+        pieces = [text[place : place + _PIECE] for place in range(0, len(text), _PIECE)]
         for handle in handles:
             os.set_inheritable(handle, True)
-        os.execv(sys.executable, [sys.executable, "-m", __spec__.name, *map(str, handles)])
+        os.execv(sys.executable, [sys.executable, "-m", __spec__.name, *map(str, handles), *pieces])
 
     def _said_at_work(self) -> str:
         """Calls that have not returned, in words; empty without one."""
