@@ -1,61 +1,30 @@
 """Faults of devices and processes in every call of a run: do motor and drive end off, and is it said truly?"""
 
-import json
-import re
-import tempfile
-import time
 from collections.abc import Sequence
-from contextlib import suppress
-from itertools import product
-from pathlib import Path
 
-from reliability.logged_rig import LoggedRig
 from reliability.study import Measure, Record, Study
+from sonolube.laboratory.driver_trial import drivers_to_try, faults_of, try_fault
 
-_OUTPUTS = [f"drive.{each}" for each in ("connect", "drive", "off", "close")]
-_OUTPUTS += [f"motor.{each}" for each in ("connect", "turn", "off", "close")]
-_INPUTS = [f"inputs.{each}" for each in ("connect", "start", "read", "stop", "close")]
-_KINDS = (
-    "hang", "late 1", "late 3", "late 12", "held 8", "exit 0", "exit 1", "unspeakable",
-    *(f"signal SIG{each}" for each in ("KILL", "STOP", "SEGV", "ABRT", "TERM", "INT", "QUIT", "TSTP", "USR1")),
-    *(f"raise {each}" for each in (
-        "DeviceError", "OSError", "TimeoutError", "RuntimeError", "ValueError", "MemoryError", "SystemExit",
-        "KeyboardInterrupt", "GeneratorExit",
-    )),
-)  # fmt: skip
-_BLOCKS = ("doubled", "longer", "stale", "slowly", "whole numbers", "infinity")
-FAULTS = (
-    *((where, kind, 1) for where, kind in product((*_OUTPUTS, *_INPUTS), _KINDS)),
-    *(("inputs.read", f"acts {each}", 3) for each in _BLOCKS),
-    ("inputs.start", "acts slowly", 1),
-    *((f"{each}.off", "acts lies", 0) for each in ("drive", "motor")),
+_BENCH = "tests.laboratory.drivers.pretended_bench"  # a function generator and a motor by their own drivers
+TRIALS = (
+    *(("", fault) for fault in faults_of(("drive", "motor", "acquisition"))),
+    *((_BENCH, fault) for fault in faults_of(("drive", "motor"))),
 )
-"""Call, fault and the number of the call from 1 that has it."""
-
-_VERDICT = re.compile(r"motor and drive: (.*)")
-_LATER = 4.0  # s, in which a call that outlives its run may act
+"""Module of the drivers, empty where all devices are pretended, and fault."""
 
 
 def _trial(seed: int) -> Record:
-    where, kind, call = FAULTS[seed]
-    with tempfile.TemporaryDirectory() as place:
-        rig = LoggedRig(Path(place) / "rig", where=where, kind=kind, call=call)
-        ended = rig.run()
-        if kind.startswith(("hang", "late", "held", "signal")):
-            time.sleep(_LATER)
-        is_on = rig.last("drive") != 0 or rig.last("motor") != 0
-    told = ""
-    with suppress(ValueError, KeyError):
-        told = json.loads(ended.output)["outputs"]
-    if found := _VERDICT.search(ended.error):
-        told = found[1]
+    module, fault = TRIALS[seed]
+    found = try_fault(drivers_to_try(module) if module else None, fault)
     return {
-        "fault": f"{where}: {kind}",
-        "on": is_on,
-        "told": told,
-        "alike": told == ended.record,
-        "lies": kind == "acts lies",
-        "traceback": "Traceback" in ended.error,
+        "fault": f"{fault.where}: {fault.kind}",
+        "on": found.is_on,
+        "told": found.verdict,
+        "alike": found.verdict == found.recorded,
+        "lies": fault.is_lie,
+        "recordable": fault.kind != "disk full",
+        "traceback": "Traceback" in found.error,
+        "ended": found.code is not None,
     }
 
 
@@ -64,6 +33,7 @@ def _measures(records: Sequence[Record]) -> list[Measure]:
     measured = [record for record in on if str(record["told"]).startswith("measured off")]
     confirmed = [record for record in on if str(record["told"]).startswith("confirmed off")]
     lying = [record for record in confirmed if record["lies"]]
+    unlike = [record for record in records if not record["alike"] and record["recordable"]]
     return [
         _none("runs told measured off with an output on", measured),
         _none(
@@ -72,8 +42,9 @@ def _measures(records: Sequence[Record]) -> list[Measure]:
         ),
         Measure(label="the same by devices that lie about it, and that no channel shows", value=str(len(lying))),
         _none("runs without a verdict on the terminal", [record for record in records if not record["told"]]),
-        _none("runs whose record has another verdict, or none", [record for record in records if not record["alike"]]),
+        _none("runs whose record has another verdict, or none though the disk is not full", unlike),
         _none("tracebacks", [record for record in records if record["traceback"]]),
+        _none("runs that do not end in two minutes", [record for record in records if not record["ended"]]),
         Measure(label="runs that end with an output on, and cut the power", value=str(len(on) - len(confirmed))),
     ]
 
@@ -86,11 +57,17 @@ def _none(label: str, found: Sequence[Record]) -> Measure:
 
 STUDY = Study(
     title="Faults of outputs",
-    question="A run on a pretended rig, whose hardware is a log, meets a fault: a call that hangs, returns late, keeps"
-    " the interpreter, raises, dies, is stopped, gives wrong blocks or lies. Does every run end with a verdict on motor"
-    " and drive that the log bears out?",
-    sources=("laboratory/*.py", "laboratory/switch_off/*.py", "laboratory/records/recovery.py"),
-    trials=len(FAULTS),
+    question="A run meets a fault: a call that hangs, returns late, keeps the interpreter, raises, dies, is stopped,"
+    " gives wrong blocks or lies; a full disk, a clock that is set. Its devices are pretended, or those of a function"
+    " generator and a motor by their drivers, with pretended instruments. Does every run end with a verdict on motor"
+    " and drive that the log, or the instruments, bear out?",
+    sources=(
+        "laboratory/*.py",
+        "laboratory/switch_off/*.py",
+        "laboratory/driver_trial/*.py",
+        "laboratory/records/recovery.py",
+    ),
+    trials=len(TRIALS),
     sample=1,
     trial=_trial,
     measures=_measures,

@@ -78,7 +78,10 @@ TESTED_ELSEWHERE = {
     ("lab run", "--anyway"),
     ("lab run", "--fact"),
     ("lab run", "--no-self-test"),
+    ("lab hold", "--no-self-test"),
     ("lab recover", "--drop-blocks"),
+    ("lab try-driver", "--quick"),
+    ("lab try-driver", "--set"),
 }
 
 

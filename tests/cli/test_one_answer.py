@@ -20,7 +20,15 @@ from sonolube.tasks.table import TASKS
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("compiled_kernels")]
 
 LONG = ("identify rig", "reproduce")  # which take twenty seconds and more; their functions have tests of their own
-RUNNING = ("lab run", "lab virtual", "lab hold", "lab check", "new", "example")  # which have the time of day, or write
+RUNNING = (
+    "lab run",
+    "lab virtual",
+    "lab hold",
+    "lab check",
+    "lab try-driver",
+    "new",
+    "example",
+)  # which have the time of day, or write
 USES = {mode.command: mode for mode in reversed(MODES.values())}
 NAMES = [task.name for task in TASKS if task.name in USES and task.name not in (*LONG, *RUNNING)]
 

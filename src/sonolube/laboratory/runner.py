@@ -9,14 +9,7 @@ from typing import Final
 from sonolube.facts.protocol import Check, Prompt, Protocol, SetPoint, flattened, step_at
 from sonolube.laboratory.block import BLOCK_DURATION
 from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting, Recorder
-from sonolube.laboratory.interlocks import (
-    IDLE_RATE,
-    SAMPLES_PER_PERIOD,
-    drive_sampling,
-    idle_rate,
-    interlocks_for,
-    set_point_trip,
-)
+from sonolube.laboratory.interlocks import drive_sampling, idle_rate, interlocks_for, set_point_trip
 from sonolube.laboratory.own_clocks import OwnClocks
 from sonolube.laboratory.run_plan import (
     SETTLING,
@@ -29,7 +22,6 @@ from sonolube.laboratory.run_plan import (
     rotation_speed,
     speed_checks,
 )
-from sonolube.laboratory.set_and_measured import SELF_TEST_TIME, difference, monitor_of, self_test_setting
 from sonolube.laboratory.standing_rig import StandingRig, off_bounds
 from sonolube.laboratory.states import Event, RunControl, RunEnded, RunState
 from sonolube.laboratory.supervised_run import Advance, Sampling, SupervisedRun
@@ -94,7 +86,7 @@ def run_protocol(
     """
     require_possible(protocol, devices)
     control = control or RunControl()
-    run = _Run(protocol, devices, recorder, operator, control, watcher, self_test=self_test and not devices.simulated)
+    run = _Run(protocol, devices, recorder, operator, control, watcher, self_test=self_test)
     with undone_at_signal(run.halt), asked_by_signal(control.stop):
         return run.complete(advance)
 
@@ -113,8 +105,7 @@ class _Run(SupervisedRun):
         *,
         self_test: bool,
     ) -> None:
-        super().__init__(devices, recorder, control, watcher)
-        self._tests_itself = self_test
+        super().__init__(devices, recorder, control, watcher, self_test=self_test)
         self._protocol, self._operator = protocol, operator
         self._points = flattened(protocol)
         self._limits = protocol.limits
@@ -141,35 +132,11 @@ class _Run(SupervisedRun):
 
     def _follow(self, advance: Advance | None) -> None:
         """Reach one set point after the other."""
-        if self._tests_itself:
-            self._test_itself()
+        self._test_itself(next(filter(None, map(drive_setting, self._points)), None))
         for point, following in pairwise(self._points):
             self._reach(point)
             self._run_until(following.time, advance)
-        self._read_back()
-
-    def _test_itself(self) -> None:
-        """Drive at a tenth of the first voltage, where a channel shows that, and compare set and measured."""
-        setting = self_test_setting(next(filter(None, map(drive_setting, self._points)), None))
-        acquisition = self._devices.acquisition
-        if setting is None:
-            return
-        rate = max(SAMPLES_PER_PERIOD * setting.frequency, IDLE_RATE)
-        name = monitor_of(acquisition.channels, sample_rate=rate, frequency=setting.frequency)
-        if not name:
-            return
-        given = acquisition.start([name], sample_rate=rate)
-        self._devices.drive.drive(setting)
-        count = max(1, round(BLOCK_DURATION * given))
-        for _ in range(round(SELF_TEST_TIME / BLOCK_DURATION)):
-            block = acquisition.read(count)
-        self._devices.drive.off()
-        acquisition.stop()
-        told = difference(block, [name], setting)
-        swing = setting.voltage_peak_to_peak
-        self._note("self-test", voltage_peak_to_peak=swing, frequency=setting.frequency, channel=name, reason=told)
-        if told:
-            raise RunEnded(Event.TRIP, f"self-test before the first step: {told}")
+        self._read_back_drive()
 
     def _switch_off(self) -> list[str]:
         """Switch drive and motor off where they were connected, and return what failed; never raises."""
@@ -207,14 +174,12 @@ class _Run(SupervisedRun):
             self._sampling.record(point.channels, sample_rate=point.sample_rate)
             self._note("acquire", step=point.step, sample_rate=self._sampling.rate)
         self._set_outputs()
-        self._read_back()
+        self._read_back_drive()
 
-    def _read_back(self) -> None:
-        """Have the source of the drive say what it gives, and note that; it raises where that is not what was set."""
-        read_back = getattr(self._devices.drive, "read_back", None)
-        answers = read_back() if read_back is not None and self._drive is not None else ""
-        if answers:
-            self._note("read back", step=self._point.step, answers=answers)
+    def _read_back_drive(self) -> None:
+        """Read the drive back where it is on."""
+        if self._drive is not None:
+            self._read_back(step=self._point.step)
 
     def _sample_again(self) -> None:
         """Start to sample what is recorded now, or next."""

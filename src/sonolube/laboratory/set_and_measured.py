@@ -31,6 +31,21 @@ _SWINGS: Final = {"sine": 2 * sqrt(2), "square": 2.0, "triangle": 2 * sqrt(3), "
 """Peak-to-peak value over the standard deviation, by waveform."""
 
 
+_NEAR: Final = 0.05  # share of the voltage by which settings differ that follow each other closely
+
+
+def is_near(former: DriveSetting | None, setting: DriveSetting | None) -> bool:
+    """Whether a setting changes the voltage alone, and by so little that what is measured needs no time to follow."""
+    if (
+        former is None
+        or setting is None
+        or replace(former, voltage_peak_to_peak=0.0) != replace(setting, voltage_peak_to_peak=0.0)
+    ):
+        return former is setting
+    swing = setting.voltage_peak_to_peak
+    return abs(swing - former.voltage_peak_to_peak) <= _NEAR * swing
+
+
 def self_test_setting(first: DriveSetting | None) -> DriveSetting | None:
     """Setting of the test before a run from the first of its protocol; None where its difference could not be seen."""
     if first is None or SELF_TEST_SHARE * first.voltage_peak_to_peak < 2 * LEAST:

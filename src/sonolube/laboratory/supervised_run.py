@@ -23,10 +23,17 @@ from sonolube.laboratory.devices import (
     require_gapless,
     switch_outputs_off,
 )
-from sonolube.laboratory.interlocks import Interlock, first_trip
+from sonolube.laboratory.interlocks import IDLE_RATE, SAMPLES_PER_PERIOD, Interlock, first_trip
 from sonolube.laboratory.own_clocks import OwnClocks
 from sonolube.laboratory.run_plan import reserved
-from sonolube.laboratory.set_and_measured import SETTLING, difference
+from sonolube.laboratory.set_and_measured import (
+    SELF_TEST_TIME,
+    SETTLING,
+    difference,
+    is_near,
+    monitor_of,
+    self_test_setting,
+)
 from sonolube.laboratory.standing_rig import measured_outputs
 from sonolube.laboratory.states import (
     Event,
@@ -114,8 +121,13 @@ class Sampling:
         self.sample, self._origin, self._latest = 0, self.time, None
 
     def expect(self, setting: DriveSetting | None) -> None:
-        """Hold what is measured of the drive to a setting, a moment after it; to none where that is None."""
-        self._expected, self._expected_from = setting, self.time + SETTLING
+        """Hold what is measured of the drive to a setting, a moment after it; to none where that is None.
+
+        Of settings that follow each other closely, as those of a controller, the first has the moment.
+        """
+        if not is_near(self._expected, setting):
+            self._expected_from = self.time + SETTLING
+        self._expected = setting
 
     def stop(self) -> None:
         """Stop to sample and to record."""
@@ -226,6 +238,8 @@ class SupervisedRun(ABC):
     recorder : Recorder or None
     control : RunControl
     watcher : RunWatcher, optional
+    self_test : bool
+        Whether what a channel measures of the drive is held to what was set, where the devices are not simulated.
     """
 
     _clocks: OwnClocks
@@ -234,8 +248,15 @@ class SupervisedRun(ABC):
     _frequency: float  # highest of the drive, in Hz; 0 without one
 
     def __init__(
-        self, devices: Devices, recorder: Recorder | None, control: RunControl, watcher: RunWatcher | None = None
+        self,
+        devices: Devices,
+        recorder: Recorder | None,
+        control: RunControl,
+        watcher: RunWatcher | None = None,
+        *,
+        self_test: bool,
     ) -> None:
+        self._tests_itself = self_test and not devices.simulated
         self._supervisor, self._watcher = Supervisor(devices), watcher
         self._devices, self._recorder, self._control = self._supervisor.devices, recorder, control
         self._present, self._is_connected = RunState(), False
@@ -305,6 +326,34 @@ class SupervisedRun(ABC):
         """End the run at a sample beyond a limit, or before such a setting is sent."""
         if trip:
             raise RunEnded(Event.TRIP, trip)
+
+    def _test_itself(self, first: DriveSetting | None) -> None:
+        """Drive at a tenth of a first voltage, where a channel shows that, and compare set and measured."""
+        setting, acquisition = self_test_setting(first), self._devices.acquisition
+        if setting is None or not self._tests_itself:
+            return
+        rate = max(SAMPLES_PER_PERIOD * setting.frequency, IDLE_RATE)
+        name = monitor_of(acquisition.channels, sample_rate=rate, frequency=setting.frequency)
+        if not name:
+            return
+        given = acquisition.start([name], sample_rate=rate)
+        self._devices.drive.drive(setting)
+        count = max(1, round(BLOCK_DURATION * given))
+        for _ in range(round(SELF_TEST_TIME / BLOCK_DURATION)):
+            block = acquisition.read(count)
+        self._devices.drive.off()
+        acquisition.stop()
+        told = difference(block, [name], setting)
+        swing = setting.voltage_peak_to_peak
+        self._note("self-test", voltage_peak_to_peak=swing, frequency=setting.frequency, channel=name, reason=told)
+        if told:
+            raise RunEnded(Event.TRIP, f"self-test before the first step: {told}")
+
+    def _read_back(self, **place: str) -> None:
+        """Have the source of the drive say what it gives, and note that; it raises where that is not what was set."""
+        read_back = getattr(self._devices.drive, "read_back", None)
+        if read_back is not None and (answers := read_back()):
+            self._note("read back", **place, answers=answers)
 
     def _switch_off(self) -> list[str]:
         """Switch drive and motor off where they were connected, and return what failed; never raises."""

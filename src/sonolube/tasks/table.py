@@ -145,6 +145,7 @@ TASKS: Final = (
     Task(LAB, "lab recover", "lab.run_folders:recover"),
     Task(LAB, "lab export", "lab.run_folders:export", "{run}.* {run}-*"),
     Task(LAB, "lab check", "lab.device_check:check"),
+    Task(LAB, "lab try-driver", "lab.driver_trial:try_driver"),
     Task(LOOKUP, "materials", "lookup.facts:materials"),
     Task(LOOKUP, "actuators", "lookup.facts:actuators"),
     Task(LOOKUP, "published", "lookup.facts:published"),

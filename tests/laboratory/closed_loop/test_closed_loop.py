@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from tests.laboratory.closed_loop.lagged_rig import LaggedRig
+from tests.laboratory.patience import be_patient
 from tests.laboratory.simulated_rig import Fault, MemoryRecord
 
 from sonolube.charts import draw_chart
@@ -29,7 +30,7 @@ from sonolube.design.control import (
 from sonolube.errors import InvalidInput
 from sonolube.facts.protocol import Limits
 from sonolube.figure import publication_style, render_figure
-from sonolube.laboratory import RunControl
+from sonolube.laboratory import Block, Devices, RunControl
 from sonolube.laboratory.closed_loop import (
     FrictionHold,
     HeldFriction,
@@ -382,3 +383,53 @@ def test_friction_of_the_virtual_tribometer_is_held_under_a_step_of_speed(seed: 
     for phase in hold_metrics(found):
         assert phase.friction_force == pytest.approx(reference, rel=0.02)
         assert phase.tracking_error < SCATTER
+
+
+@dataclass
+class MonitoredRig(LaggedRig):
+    """A rig that is no simulation to the program, whose drive gives a multiple of what is set and says what that is."""
+
+    gain: float = 1.0
+    gain_from: float = 0.0  # time in s from which on that is so
+
+    def devices(self) -> Devices:
+        found = replace(super().devices(), simulated=False)
+        found.drive.read_back = lambda: f"AMPL {self.swing:g}"  # type: ignore[attr-defined]
+        return found
+
+    def read(self, samples: int) -> Block:
+        block, column = super().read(samples), list(self.names).index("voltage_peak_to_peak")
+        if block.start >= self.gain_from:
+            block.values[:, column] *= self.gain
+        return block
+
+
+def test_a_hold_tests_itself_reads_the_drive_back_and_compares_every_interval(monkeypatch: pytest.MonkeyPatch) -> None:
+    be_patient(monkeypatch)
+    rig, record = MonitoredRig(straight, 5e-3), MemoryRecord()
+    held = hold_friction(hold(controller(), duration=1.0), rig.devices(), recorder=record)
+    assert (held.outcome, held.reason) == ("completed", "")
+    (tested,) = [facts for kind, facts in record.notes if kind == "self-test"]
+    assert (tested["voltage_peak_to_peak"], tested["reason"]) == (pytest.approx(3.0), "")  # a tenth of 30 V
+    answers = [facts["answers"] for kind, facts in record.notes if kind == "read back"]
+    assert answers == [f"AMPL {each:g}" for each in held.voltage_peak_to_peak[[0, -1]]]
+
+
+@pytest.mark.parametrize(
+    ("gain_from", "self_test", "reason"),
+    [
+        (0.0, True, "self-test before the first step: channel voltage_peak_to_peak measures 6 V"),
+        (1.0, True, "channel voltage_peak_to_peak measures"),
+        (0.0, False, ""),
+    ],
+)
+def test_a_hold_whose_drive_gives_twice_the_voltage_ends_off(
+    gain_from: float, self_test: bool, reason: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    be_patient(monkeypatch)
+    rig = MonitoredRig(straight, 5e-3, gain=2.0, gain_from=gain_from)
+    wanted = hold(controller(), duration=2.0, limits=limits("100 V"))
+    held = hold_friction(wanted, rig.devices(), self_test=self_test)
+    assert held.outcome == ("stopped" if reason else "completed")
+    assert held.reason.startswith(reason)
+    assert rig.is_off

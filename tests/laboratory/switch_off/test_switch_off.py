@@ -14,10 +14,10 @@ from typing import Any
 
 import pytest
 from pytest import MonkeyPatch, raises
-from reliability.logged_rig import LoggedRig
 
 from sonolube.laboratory import Devices, DriveSetting
 from sonolube.laboratory.devices import DeviceError, DeviceLost
+from sonolube.laboratory.driver_trial import Fault, Trial
 from sonolube.laboratory.drivers import read_device_map
 from sonolube.laboratory.switch_off import client, with_outputs_apart
 from sonolube.operating_system import process_start
@@ -28,10 +28,23 @@ OWN_WORD = "confirmed off, drive and motor by the device's own word, not measure
 needs_signals = pytest.mark.skipif(os.name == "nt", reason="Windows has no such signals")
 
 
+PATIENT = """import runpy
+import sonolube.laboratory.supervision as supervision
+supervision.LATE = 3600.0
+runpy.run_module("sonolube", run_name="__main__", alter_sys=True)
+"""
+
+
+def logged_rig(folder: Path, *, duration: float = 0.4, is_patient: bool = False, **fault: Any) -> Trial:
+    """A rig of pretended devices; patient, its supervisor lets blocks and calls be late on a slow machine."""
+    program = ("-c", PATIENT) if is_patient else ("-m", "sonolube")
+    return Trial(folder, fault=Fault(**fault), duration=duration, program=program)
+
+
 @contextmanager
-def connected(folder: Path, **fault: Any) -> Iterator[tuple[LoggedRig, Devices]]:
+def connected(folder: Path, **fault: Any) -> Iterator[tuple[Trial, Devices]]:
     """Outputs of the logged rig in a switch-off process, connected but for a fault, and released."""
-    rig = LoggedRig(folder / "rig", **fault)
+    rig = logged_rig(folder / "rig", **fault)
     with MonkeyPatch.context() as patch:
         patch.syspath_prepend(str(rig.folder))
         devices = with_outputs_apart(read_device_map(rig.folder / "devices.toml"))
@@ -48,9 +61,9 @@ def connected(folder: Path, **fault: Any) -> Iterator[tuple[LoggedRig, Devices]]
     assert not any(map(process_start, processes_of(rig)))
 
 
-def processes_of(rig: LoggedRig) -> list[int]:
+def processes_of(rig: Trial) -> list[int]:
     """Processes that have set an output, in order."""
-    return list(dict.fromkeys(int(line[0]) for line in rig.log if line[1] != "call"))
+    return list(dict.fromkeys(int(line[1]) for line in rig.log if line[2] not in ("call", "fault")))
 
 
 def test_outputs_are_set_by_another_process_which_ends_with_their_release(tmp_path: Path) -> None:
@@ -65,7 +78,10 @@ def test_outputs_are_set_by_another_process_which_ends_with_their_release(tmp_pa
         devices.motor.off()
         assert (rig.last("drive"), rig.last("motor")) == (0.0, 0.0)
     assert not process_start(process)
-    assert (devices.drive.voltage_maximum, devices.motor.rotation_speed_maximum) == (80.0, 5.0)
+    assert (devices.drive.voltage_maximum, devices.motor.rotation_speed_maximum) == (
+        10.0,
+        5.0,
+    )  # the amplifier takes 10 V, gain 1
 
 
 def test_devices_are_connected_anew_after_their_release(tmp_path: Path) -> None:
@@ -91,7 +107,7 @@ def test_a_setting_that_hangs_ends_with_its_process_and_another_switches_off(met
         told: list[str] = []
         setting = threading.Thread(target=lambda: told.append(failure_in(lambda: devices.drive.drive(ON))))
         setting.start()
-        until(lambda: ["call", "drive.drive"] in [line[1:] for line in rig.log])
+        until(lambda: ["call", "drive.drive"] in [line[2:] for line in rig.log])
         devices.motor.halt()  # type: ignore[attr-defined]
         getattr(devices.drive, method)()
         setting.join(30)
@@ -123,9 +139,9 @@ def test_a_setting_that_returns_after_off_is_switched_off_anew_before_that_is_co
     with connected(tmp_path, where="drive.drive", kind="late 1") as (rig, devices):
         setting = threading.Thread(target=devices.drive.drive, args=(ON,), daemon=True)
         setting.start()
-        until(lambda: ["call", "drive.drive"] in [line[1:] for line in rig.log])
+        until(lambda: ["call", "drive.drive"] in [line[2:] for line in rig.log])
         devices.drive.halt()  # type: ignore[attr-defined]
-        settings = [float(line[2]) for line in rig.log if line[1] == "drive"]
+        settings = [float(line[3]) for line in rig.log if line[2] == "drive"]
         assert settings[-2:] == [20.0, 0.0]
         with raises(DeviceError, match="was switched off for good"):
             devices.drive.drive(ON)
@@ -184,7 +200,7 @@ def test_whatever_a_device_raises_is_a_device_error_that_names_it(kind: str, tmp
 
 
 def test_a_process_that_cannot_make_the_devices_connects_nothing(tmp_path: Path) -> None:
-    rig = LoggedRig(tmp_path / "rig")
+    rig = logged_rig(tmp_path / "rig")
     with MonkeyPatch.context() as patch:
         patch.syspath_prepend(str(rig.folder))
         devices = with_outputs_apart(read_device_map(rig.folder / "devices.toml"))
@@ -205,9 +221,9 @@ def test_a_process_that_cannot_make_the_devices_connects_nothing(tmp_path: Path)
 def test_where_the_program_of_a_run_dies_or_stops_its_switch_off_process_has_the_last_word(
     number: signal.Signals, what: str, tmp_path: Path
 ) -> None:
-    rig = LoggedRig(tmp_path / "rig", duration=90, is_patient=True)
+    rig = logged_rig(tmp_path / "rig", duration=90, is_patient=True)
     process = rig.start()
-    rig.wait_until_on()
+    until(lambda: rig.last("drive"))
     os.kill(process.pid, number)
     ended = rig.ended(process)
     assert ended.is_off
@@ -216,15 +232,15 @@ def test_where_the_program_of_a_run_dies_or_stops_its_switch_off_process_has_the
     assert told.startswith(f"sonolube: the program of the run, process {process.pid}, {what}")
     assert told.endswith(f"; motor and drive: {OWN_WORD}")
     assert record.startswith("sonolube: the record is closed: ")
-    assert ended.record == OWN_WORD
+    assert ended.recorded == OWN_WORD
 
 
 @needs_signals
 def test_a_run_whose_inputs_keep_the_interpreter_is_ended_and_switched_off(tmp_path: Path) -> None:
-    ended = LoggedRig(
-        tmp_path / "rig", duration=90, is_patient=True, where="inputs.read", call=3, kind="held 1000"
+    ended = logged_rig(
+        tmp_path / "rig", duration=90, is_patient=True, where="acquisition.read", call=3, kind="held 1000"
     ).run()
-    assert (ended.is_off, ended.record) == (True, OWN_WORD)
+    assert (ended.is_off, ended.recorded) == (True, OWN_WORD)
     assert "has given no sign of life for 5 s, and was ended; motor and drive: confirmed off" in ended.error
 
 
@@ -240,8 +256,8 @@ def test_a_run_whose_inputs_keep_the_interpreter_is_ended_and_switched_off(tmp_p
     ],
 )
 def test_a_run_ends_with_the_verdict_that_holds(where: str, kind: str, verdict: str, tmp_path: Path) -> None:
-    ended = LoggedRig(tmp_path / "rig", where=where, kind=kind).run()
-    assert ended.record.startswith(verdict)
+    ended = logged_rig(tmp_path / "rig", where=where, kind=kind).run()
+    assert ended.recorded.startswith(verdict)
     assert f'"outputs": "{verdict}' in ended.output
     assert ended.code == (1 if verdict == OWN_WORD else 3)
     assert ended.is_off is (verdict == OWN_WORD) or kind.startswith("raise")

@@ -33,6 +33,7 @@ def hold_friction(
     recorder: Recorder | None = None,
     control: RunControl | None = None,
     advance: Advance | None = None,
+    self_test: bool = True,
 ) -> HeldFriction:
     """Hold friction at a reference on devices, by the controller that `sonolube control` designs.
 
@@ -47,6 +48,9 @@ def hold_friction(
         Requests of others to stop.
     advance : callable, optional
         Reports progress.
+    self_test : bool
+        Of devices that are not simulated, drive at a tenth of the highest voltage for 0.3 s before the run-in and
+        compare it with what a channel measures, and do so at every interval. It vibrates the specimens.
 
     Returns
     -------
@@ -66,7 +70,7 @@ def hold_friction(
     """
     require_holdable(hold, devices)
     control = control or RunControl()
-    loop = _Loop(hold, devices, recorder, control)
+    loop = _Loop(hold, devices, recorder, control, self_test=self_test)
     with undone_at_signal(loop.halt), asked_by_signal(control.stop):
         return loop.complete(advance)
 
@@ -74,8 +78,10 @@ def hold_friction(
 class _Loop(SupervisedRun):
     """One loop on devices."""
 
-    def __init__(self, hold: FrictionHold, devices: Devices, recorder: Recorder | None, control: RunControl) -> None:
-        super().__init__(devices, recorder, control)
+    def __init__(
+        self, hold: FrictionHold, devices: Devices, recorder: Recorder | None, control: RunControl, *, self_test: bool
+    ) -> None:
+        super().__init__(devices, recorder, control, self_test=self_test)
         self._hold, self._limits, self._frequency = hold, hold.limits, hold.frequency
         channels = devices.acquisition.channels
         locks = interlocks_for(hold.limits, devices.channels, hold.drive_sampling)
@@ -85,6 +91,7 @@ class _Loop(SupervisedRun):
         self._interval = nan  # of the controller by the clock of the acquisition, in s
         self._rows: list[tuple[float, float, float, float]] = []
         self._run_in_means: list[float] = []
+        self._is_on, self._was_read_back = False, False
 
     def complete(self, advance: Advance | None) -> HeldFriction:
         """Run the loop to its end, whatever that is."""
@@ -92,9 +99,12 @@ class _Loop(SupervisedRun):
         return self._result()
 
     def _follow(self, advance: Advance | None) -> None:
-        """Run in, then control."""
+        """Run in, then control; the source of the drive is read back when it is first on, and at the end."""
+        self._test_itself(self._setting(self._hold.controller.level_maximum))
         self._sample()
         self._control_friction(self._running_in(), advance)
+        if self._is_on:
+            self._read_back()
         self._sampling.end_recording()
 
     def _sample(self) -> None:
@@ -138,18 +148,27 @@ class _Loop(SupervisedRun):
         self._devices.motor.turn(speed / (pi * self._devices.groove_diameter))
         self._note("motor", sliding_speed=speed)
 
-    def _drive(self, voltage: float) -> None:
-        """Set the drive to a peak-to-peak voltage."""
-        if voltage <= 0:
-            self._devices.drive.off()
-            return
-        setting = DriveSetting(
+    def _setting(self, voltage: float) -> DriveSetting:
+        """Output of the drive at a peak-to-peak voltage."""
+        return DriveSetting(
             voltage_peak_to_peak=voltage,
             voltage_offset=self._hold.offset_ratio * voltage,
             frequency=self._hold.frequency,
         )
+
+    def _drive(self, voltage: float) -> None:
+        """Set the drive to a peak-to-peak voltage."""
+        self._is_on = voltage > 0
+        setting = self._setting(voltage) if self._is_on else None
+        self._sampling.expect(setting if self._tests_itself else None)
+        if setting is None:
+            self._devices.drive.off()
+            return
         self._end_at(set_point_trip(setting, self._hold.limits))
         self._devices.drive.drive(setting)
+        if not self._was_read_back:
+            self._was_read_back = True
+            self._read_back()
 
     def _measure(self) -> tuple[float, float]:
         """Mean friction and its deviation over the end of the next interval, held to counter and limits. [N]"""

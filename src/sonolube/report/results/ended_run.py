@@ -64,9 +64,9 @@ _MAX_SAMPLES = 10_000_000  # of a recording whose mean is computed
 def run_blocks(result: RunState, run: Run, *, simulated: bool) -> list[Block]:
     """Outcome, what was recorded, and the next command."""
     summary = run.summary
-    mean = _mean_friction(run)
+    mean, (outcome, reason) = _mean_friction(run), _end(result, run)
     rows = [
-        ("outcome", summary.outcome + (f": {summary.reason}" if summary.reason else "")),
+        ("outcome", outcome + (f": {reason}" if reason else "")),
         ("motor and drive", verdict_text(result.verdict)),
         ("recorded", f"{format_si(summary.duration, 's')}, {summary.samples} samples of each channel"),
         ("channels", ", ".join(each.described for each in run.channels.values())),
@@ -79,9 +79,11 @@ def run_blocks(result: RunState, run: Run, *, simulated: bool) -> list[Block]:
 
 def run_object(result: RunState, run: Run, *, simulated: bool) -> dict[str, Any]:
     """Outcome, folder and recordings, for JSON."""
-    summary = run.summary
+    summary, (outcome, reason) = run.summary, _end(result, run)
     return {
-        **picked(summary, "title", "outcome", "reason"),
+        "title": summary.title,
+        "outcome": outcome,
+        "reason": reason,
         "state": result.state.value,
         "outputs": verdict_text(result.verdict),
         "simulated": simulated,
@@ -93,6 +95,13 @@ def run_object(result: RunState, run: Run, *, simulated: bool) -> dict[str, Any]
         "tags": run.facts.get("tags", ""),
         **si({"friction_force": _mean_friction(run)}),
     }
+
+
+def _end(result: RunState, run: Run) -> tuple[str, str]:
+    """Outcome and reason of a run; those that its record could not take, as on a full disk, from the run itself."""
+    summary = run.summary
+    lacks_end = summary.outcome == "unfinished" and result.outcome
+    return (result.outcome, result.reason) if lacks_end else (summary.outcome, summary.reason)
 
 
 def run_caveats(run: Run, rig: Rig | None) -> list[str]:

@@ -19,7 +19,7 @@ from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.design import control as loop
 from sonolube.tasks.lab.protocol_run import ControlDoor, device_file, run_stage
-from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, RealTime, Seed, Tags
+from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, NoSelfTest, RealTime, Seed, Tags
 from sonolube.tasks.parameters import Number, Parameter, Quantity, RigFile, Watched, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
@@ -131,6 +131,7 @@ def hold(
     device_map: Device = "virtual",
     seed: Seed = 0,
     real_time: RealTime = False,
+    no_self_test: NoSelfTest = False,
     tag: Tags = (),
     out: AllRuns = RUNS,
     control: ControlDoor = None,
@@ -147,6 +148,8 @@ def hold(
     if known.structure is not None:
         refuse_unused("quality", "coupling", because="for a rig whose file has the table structure")
     file = device_file(device_map)
+    if file is None:
+        refuse_unused("no_self_test", because=f"with {shown('device_map')} virtual, which is not tested so")
     swing, voltage = drive.voltage_peak_to_peak or 0.0, in_si("voltage_limit", voltage_limit)
     target = None if friction is None else loop.friction_force("friction", friction, normal_load=known.normal_load)
     settings = ControlSettings(
@@ -184,10 +187,13 @@ def hold(
         drive=wanted.drive_sampling,
     )
     require_free(devices.resources)
-    recorder = begin_record(plan, devices, out=Path(out), facts={"reference_friction_force": wanted.friction_force})
+    facts = {"reference_friction_force": wanted.friction_force, **({"self_test": "left out"} if no_self_test else {})}
+    recorder = begin_record(plan, devices, out=Path(out), facts=facts)
     requests = control or RunControl()
     with run_stage("holding", requests) as advance:
-        held = holds.hold_friction(wanted, devices, recorder=recorder, control=requests, advance=advance)
+        held = holds.hold_friction(
+            wanted, devices, recorder=recorder, control=requests, advance=advance, self_test=not no_self_test
+        )
         if virtual is not None:
             recorder.store_truth(virtual.truth())
     return HoldAnswer(

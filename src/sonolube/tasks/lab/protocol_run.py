@@ -26,7 +26,7 @@ from sonolube.report.results import ended_run as results
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.files import InputFile, file_path
-from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, Seed, Tags, facts_of
+from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, NoSelfTest, Seed, Tags, facts_of
 from sonolube.tasks.parameters import (
     DoorParameter,
     File,
@@ -253,9 +253,7 @@ def run(
     dry_run: Annotated[bool, Parameter("Tell what will happen, and touch nothing.")] = False,
     anyway: Annotated[bool, Parameter("Run although a dry run says that it is impossible.")] = False,
     yes: Annotated[bool, Parameter("Take the prompts to the operator as done.")] = False,
-    no_self_test: Annotated[
-        bool, Parameter("Do not compare voltages that are set and measured, before the first step and at every block.")
-    ] = False,
+    no_self_test: NoSelfTest = False,
     tag: Tags = (),
     fact: Annotated[
         Mapping[str, str | float] | None,

@@ -24,6 +24,9 @@ AllRuns = Annotated[str | Path, OwnFolder("Folder of all runs; each has a new on
 Tags = Annotated[Sequence[str], Parameter("For the catalogue; may come again.", "TAG")]
 Seed = Annotated[int, Parameter("Of a virtual tribometer.", lowest=0)]
 RealTime = Annotated[bool, Parameter("Let a virtual test take its time.")]
+NoSelfTest = Annotated[
+    bool, Parameter("Do not compare voltages that are set and measured, before the first step and at every block.")
+]
 Device = Annotated[str | Path, DeviceParameter("What to run on.", "virtual|MAP.toml", option="--device")]
 
 
