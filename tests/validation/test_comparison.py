@@ -3,22 +3,35 @@
 import csv
 import io
 from dataclasses import replace
-from math import pi
+from math import pi, sqrt
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from pytest import approx, raises
+from pytest import MonkeyPatch, approx, raises
+from scipy.optimize import brentq
 from scipy.special import ellipk, i0
 from tests.same import same
 
 from sonolube.errors import InvalidInput, UnknownName
+from sonolube.models import friction
 from sonolube.models.contact import decay_length
 from sonolube.models.friction import sine_stick_slip_ratio
 from sonolube.rig import read_rig, steady_vibration
-from sonolube.validation.assessment import FITTED_SETS, Fit
-from sonolube.validation.comparison import COMPARED_MODELS, ComparedFit, compare_models, compared_models, predict_rig
-from sonolube.validation.model_variant import VibratedRig, vibrated_rig
+from sonolube.validation import friction_model_variants
+from sonolube.validation.assessment import FITTED_SETS, Assessment, ErrorStatistics, Fit, InformationCriteria
+from sonolube.validation.comparison import (
+    COMPARED_MODELS,
+    ComparedFit,
+    FittedParameter,
+    Prediction,
+    RigPrediction,
+    compare_models,
+    compared_models,
+    predict_rig,
+)
+from sonolube.validation.model_variant import FreeParameter, ModelVariant, VibratedRig, vibrated_rig
 from sonolube.validation.published_tests import FrictionTest, friction_tests, in_plane_tests
 from sonolube.validation.tables import comparison_csv, comparison_dataset
 
@@ -217,6 +230,139 @@ def test_the_in_plane_phase_is_the_same_quantity_in_every_model(phase: float) ->
     assert ratio("elliptical", test, fraction, phase) == approx(linear, abs=1e-4)
 
 
+def test_the_ratio_of_an_elastic_drive_is_of_one_natural_period_after_eight(monkeypatch: MonkeyPatch) -> None:
+    # 8 kN/m and 0.5 kg: 126.5 rad/s, and a damper of 0.2 of the critical 2 sqrt(k m)
+    given: dict[str, Any] = {}
+
+    class Slide:
+        mean_drive_force = 0.25 * 0.3 * 4.0
+
+    def record(law: friction.DahlFriction, drive: friction.Holder, **settings: float) -> Slide:
+        given.update(law=law, drive=drive, **settings)
+        return Slide()
+
+    monkeypatch.setattr(friction, "spring_driven_slider_force", record)
+    contact = friction_tests("A")[0].contact
+    rig = VibratedRig(
+        label="driven", contact=contact, normal_load=4.0, friction_coefficient=0.3, sliding_speed=0.02,
+        vibration_amplitude=None, frequency=3e3, in_plane_amplitude=2e-6, holder_stiffness=8e3, holder_mass=0.5,
+    )  # fmt: skip
+    assert ratio("dahl-driven", rig) == approx(0.25)
+    period = 2 * pi * sqrt(0.5 / 8e3)
+    assert (given["settling_time"], given["duration"]) == approx((8 * period, period))
+    drive, law = given["drive"], given["law"]
+    assert (drive.holder_stiffness, drive.holder_mass) == approx((8e3, 0.5))
+    assert drive.holder_damping == approx(0.2 * 2 * sqrt(8e3 * 0.5))
+    assert law.coulomb_friction_force == approx(1.2)
+    poisson = contact.pair.poisson_ratio  # of both bodies: 2 (1 - nu)/(2 - nu) of the normal stiffness, 4 N over 2 um
+    assert law.contact_stiffness == approx(2 * (1 - poisson) / (2 - poisson) * 4.0 / 2e-6, rel=1e-3)
+    settings = {name: given[name] for name in ("sliding_speed", "frequency", "vibration_amplitude")}
+    assert settings == approx({"sliding_speed": 0.02, "frequency": 3e3, "vibration_amplitude": 2e-6})
+
+
+def test_friction_oblique_to_the_vibration_is_the_mean_cosine_of_the_relative_velocity() -> None:
+    test, fraction, angle = friction_tests("A")[1], 0.3, 0.7
+    peak = fraction * 2 * pi * 22e3 * 2.5e-6
+    turned = peak * np.cos(2 * pi * (np.arange(20_000) + 0.5) / 20_000)
+    along, across = 0.0406 - turned * np.cos(angle), turned * np.sin(angle)
+    expected = float(np.mean(along / np.hypot(along, across)))
+    assert ratio("coulomb-oblique-fitted", test, fraction, angle) == approx(expected, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "mindlin"),
+    [
+        ("spring-flat", (), None),
+        ("spring-parabolic", (), None),
+        ("spring-flat-fitted", (0.8e-6, 0.4), 0.4),
+        ("spring-in-plane", (0.4, 0.0, 0.0), 0.4),
+    ],
+)
+def test_springs_slide_slowly_with_their_least_load_up_to_the_speed_of_their_slip(
+    name: str, values: tuple[float, ...], mindlin: float | None
+) -> None:
+    # least over mean load; at omega a mu k_z/k_x and above the load never falls faster than the springs slip
+    test = friction_tests("B")[0]
+    linear = test.contact.roughness.rms_height / 3  # load over stiffness of exponential heights
+    a = test.vibration_amplitude
+    if name == "spring-parabolic":  # F of u to 3/2, so that F/k is 2/3 of u; about the approach of the same mean load
+        rest = 1.5 * linear
+        angle = 2 * pi * (np.arange(2000) + 0.5) / 2000
+        mean = brentq(lambda u: np.mean((u + a * np.cos(angle)) ** 1.5) - rest**1.5, a, 2 * rest)
+        least = ((mean - a) / rest) ** 1.5
+    else:
+        least = 1 - a / (0.8e-6 if name == "spring-flat-fitted" else linear)
+    assert ratio(name, replace(test, sliding_speed=1e-7), *values) == approx(least, abs=2e-3)
+    poisson = test.contact.pair.poisson_ratio
+    stiffness_ratio = mindlin or 2 * (1 - poisson) / (2 - poisson)
+    critical = 2 * pi * 22e3 * a * 0.178 / stiffness_ratio
+    fast, slower = (replace(test, sliding_speed=part * critical) for part in (1.01, 0.9))
+    assert ratio(name, fast, *values) == approx(1.0, abs=1e-6)
+    assert ratio(name, slower, *values) < 1 - 1e-4
+
+
+@pytest.mark.parametrize("speed", [0.1, 0.5, 0.8])
+def test_the_published_approximation_for_springs_is_its_polynomial_of_the_speed_ratio(speed: float) -> None:
+    test = friction_tests("B")[0]
+    approach, a = test.contact.roughness.rms_height / 3, test.vibration_amplitude
+    stiffness_ratio = 2 * (1 - 0.29) / (2 - 0.29)  # of two bodies of steel
+    critical = 2 * pi * 22e3 * a * 0.178 / stiffness_ratio
+    polynomial = 0.75 * (1 - speed) ** 2 + 0.25 * (1 - speed) ** 4
+    found = ratio("spring-approximate", replace(test, sliding_speed=speed * critical))
+    assert found == approx(1 - a / approach * polynomial, rel=1e-6)
+
+
+def test_stiff_springs_and_bristles_under_both_motions_are_rigid_and_bristles_follow_their_stribeck_curve() -> None:
+    fast, fraction, phase = friction_tests("B")[0], 0.5, 0.6
+    test = replace(fast, contact=friction_tests("A")[0].contact)  # R_q of 6 um: nearly linear in the amplitude
+    a, omega, length = test.vibration_amplitude, 2 * pi * test.frequency, 2e-6
+    theta = np.linspace(0, 2 * pi, 200_000, endpoint=False)
+    velocity = test.sliding_speed - fraction * omega * a * np.sin(theta - phase)
+    assert velocity.min() > 0
+    slower = replace(test, sliding_speed=0.4 * test.sliding_speed)
+    turned = np.sign(velocity - 0.6 * test.sliding_speed)
+    linear = float(np.mean((1 - a / length * np.cos(theta)) * turned))
+    assert abs(linear) < 0.9
+    assert ratio("spring-in-plane", slower, 30.0, fraction, phase) == approx(linear, abs=0.03)
+    # the friction of the test is that at its speed, whatever the excess at rest
+    pressed = np.exp(-a / length * np.cos(theta)) / i0(a / length)
+
+    def curve(speed: Any) -> Any:
+        return 1 + (2.5 - 1) * np.exp(-((speed / 0.05) ** 2))
+
+    stribeck = float(np.mean(pressed * curve(velocity)) / curve(test.sliding_speed))
+    assert abs(stribeck - 1) > 0.1
+    assert ratio("lugre-in-plane", test, 1e4, 2.5, 0.05, fraction, phase) == approx(stribeck, abs=0.02)
+    assert ratio("lugre-in-plane", test, 1e4, 2.5, 0.05, 0.0, 0.0) == approx(1.0, abs=0.01)
+
+
+def test_factors_of_area_and_friction_are_those_of_contact_and_test_and_a_compliance_is_one_over_the_stiffness() -> (
+    None
+):
+    test = friction_tests("A")[1]
+    wide = replace(test, contact=replace(test.contact, nominal_area=2 * 2.25e-6))
+    assert ratio("dong-2015-load-balanced-per-rig", test, 2.0, 1.0, 1.0) == approx(
+        ratio("dong-2015-load-balanced", wide)
+    )
+    assert ratio("dong-2015-load-balanced", wide) != approx(ratio("dong-2015-load-balanced", test), rel=1e-3)
+    dry = replace(test, friction_coefficient=1.2 * test.friction_coefficient)
+    assert ratio("asperity-stick-slip-mindlin-per-rig", test, 1.2, 1.0, 1.0) == approx(
+        ratio("asperity-stick-slip-mindlin", dry)
+    )
+    poisson = test.contact.pair.poisson_ratio
+    memory = test.friction_coefficient * (2 - poisson) / (2 * (1 - poisson)) * 2e-6  # mu k_n/k_t l
+    assert ratio("asperity-stick-slip-mindlin", test) == approx(ratio("asperity-stick-slip-fitted", test, memory))
+    rigid, nearly, soft = (
+        ratio("bristle-with-holder-per-rig", test, compliance, 0.0, 0.0) for compliance in (0.0, 1e-12, 4e-7)
+    )
+    assert nearly == approx(rigid, rel=1e-3)
+    assert soft != approx(rigid, rel=1e-2)
+    held = friction.BristleWithHolder(holder_stiffness=2.5e6)
+    motion = friction_model_variants.balanced_motion(test.contact, 3.0, 2.5e-6, 22e3)
+    known = held.ratio(test.contact, motion, sliding_speed=0.0406, friction_coefficient=test.friction_coefficient)
+    assert soft == approx(float(known))
+
+
 @pytest.mark.parametrize("name", ["spring-longitudinal", "dahl-driven"])
 def test_a_stroke_longer_than_any_preslide_is_that_of_coulombs_friction(name: str) -> None:
     test = friction_tests("A")[0]
@@ -332,3 +478,78 @@ def test_the_tables_have_every_model_and_test_with_units(published: tuple[Compar
     rows = list(csv.DictReader(io.StringIO(comparison_csv(published))))
     assert [row["model"] for row in rows] == [one.model.name for one in published]
     assert rows[0]["fitted"].startswith("memory_length")
+
+
+def statistics(rms: float, *, out_of_range: tuple[str, ...] = ()) -> ErrorStatistics:
+    return ErrorStatistics(rms=rms, largest=-2 * rms, median_relative=3 * rms, count=2, out_of_range=out_of_range)
+
+
+def made_fit(name: str, *, assessed: bool = True, sets: str = "AB") -> ComparedFit:
+    """Fit with known errors to two tests, the second of which it does not reach."""
+    first, second = friction_tests("A")[0], friction_tests("B")[0]
+    slope = FreeParameter(name="slope", default=0.5, initial_values=(0.3,), low=-5.0, high=5.0, reason="any")
+    model = ModelVariant(name, "by hand", lambda test, slope: slope, parameters=(slope,), source=f"source of {name}")
+    assessment = Assessment(
+        fit=Fit(variant=model, sets=sets, values=(0.4,)),
+        fit_errors=statistics(0.1),
+        cross_validation_errors=statistics(0.2),
+        information=InformationCriteria(aicc=-7.5, bic=-6.5, parameter_count=1),
+    )
+    fitted = FittedParameter(parameter=slope, value=0.4, interval=(0.3, 0.6), leave_one_out_range=None)
+    return ComparedFit(
+        model=model,
+        sets=sets,
+        assessment=assessment if assessed else None,
+        parameters=(fitted,) if assessed else (),
+        predictions=(
+            Prediction(test=first, fitted=0.45, cross_validated=0.55, reason=None),
+            Prediction(test=second, fitted=None, cross_validated=None, reason="too slow"),
+        ),
+    )
+
+
+def test_the_dataset_has_each_number_at_its_model_and_test_and_the_reason_where_there_is_none() -> None:
+    one, other = made_fit("one"), made_fit("other", assessed=False)
+    rig = RigPrediction(
+        model=other.model, friction_ratio=None, raw_friction_ratio=1.2, uncertainty=None, reason="beyond"
+    )
+    known = RigPrediction(model=one.model, friction_ratio=0.7, raw_friction_ratio=0.7, uncertainty=0.2, reason=None)
+    found = comparison_dataset((one, other), (rig, known))
+    assert [str(label) for label in found["test"].to_numpy()] == ["A-1", "B-1"]
+    assert found["reason"].to_numpy().tolist() == [["", "too slow"], ["", "too slow"]]
+    np.testing.assert_allclose(found["fitted_ratio"], [[0.45, np.nan]] * 2)
+    np.testing.assert_allclose(found["cross_validated_ratio"], [[0.55, np.nan]] * 2)
+    np.testing.assert_allclose(found["rms"], [0.1, np.nan])
+    np.testing.assert_allclose(found["rms_cross_validated"], [0.2, np.nan])
+    np.testing.assert_allclose(found["aicc"], [-7.5, np.nan])
+    assert found["fitted_parameters"].to_numpy().tolist() == [1, 0]
+    np.testing.assert_allclose(found["rig_friction_ratio"], [0.7, np.nan])
+    np.testing.assert_allclose(found["rig_uncertainty"], [0.2, np.nan])
+    assert found["rig_reason"].to_numpy().tolist() == ["", "beyond"]
+    assert "rig_reason" not in comparison_dataset((one, other))
+
+
+def test_the_table_has_the_errors_of_fit_and_cross_validation_and_empty_cells_where_nothing_is_known() -> None:
+    assessed, other = csv.DictReader(io.StringIO(comparison_csv((made_fit("one"), made_fit("other", assessed=False)))))
+    assert {name: assessed[name] for name in ("model", "source", "sets", "fitted_parameters")} == {
+        "model": "one", "source": "source of one", "sets": "AB", "fitted_parameters": "1",
+    }  # fmt: skip
+    names = ("rms", "rms_cross_validated", "largest_error", "median_relative", "aicc")
+    assert [float(assessed[name]) for name in names] == approx([0.1, 0.2, -0.2, 0.3, -7.5])
+    assert float(assessed["rms_in_A"]) == approx(0.45 - friction_tests("A")[0].friction_ratio, rel=1e-3)
+    assert (assessed["rms_in_B"], assessed["rms_in_C"]) == ("", "")
+    assert assessed["fitted"] == "slope 0.4 (95 %: 0.3 to 0.6)"
+    assert [other[name] for name in (*names, "fitted")] == [""] * 6
+
+
+def test_a_prediction_of_a_rig_is_uncertain_where_several_sets_were_all_within_the_range() -> None:
+    rig = vibrated_rig(read_rig(ROOT / "examples/rigs/tribometer.toml"))
+    several, single = made_fit("several"), made_fit("single", sets="A")
+    assert several.assessment is not None
+    beyond = replace(
+        several, assessment=replace(several.assessment, cross_validation_errors=statistics(0.2, out_of_range=("A-1",)))
+    )
+    found = [predict_rig((one,), rig)[0] for one in (several, single, beyond, made_fit("none", assessed=False))]
+    assert [one.friction_ratio for one in found] == approx([0.4, 0.4, 0.4, 0.5])
+    assert [one.uncertainty for one in found] == [approx(0.2), None, None, None]
+    assert [one.model.name for one in predict_rig((single, several), rig)] == ["several", "single"]

@@ -116,7 +116,13 @@ seen = {sets = "AC", refitted = "fitted"}
 friction_model = "kinematic"
 """
     )
-    plain, fitted, seen = read_variants(tmp_path / "variants.toml", level=lambda *given, **values: 0.5)
+    given: list[Any] = []
+
+    def level(*arguments: Any, **values: float) -> float:
+        given.append((arguments, values))
+        return 0.5
+
+    plain, fitted, seen = read_variants(tmp_path / "variants.toml", level=level)
     assert plain.parameters == ()
     assert plain.seen is None
     assert plain.friction_model is None
@@ -131,6 +137,14 @@ friction_model = "kinematic"
     assert seen.seen_constants == 3
     assert plain.seen_constants == 0
     assert seen.friction_model is FRICTION_MODELS["kinematic"]
+    test = friction_tests("G")[0]
+    assert [each.predict(test, *values) for each, values in ((plain, ()), (seen, ()), (fitted, (1e-6, 0.3, 0.2)))] == [
+        approx(0.5)
+    ] * 3
+    assert given == [
+        ((test,), {}), ((FRICTION_MODELS["kinematic"], test), {}),
+        ((test,), {"memory_length": 1e-6, "amplitude_fraction": 0.3}),
+    ]  # fmt: skip
 
 
 def test_a_rig_along_the_normal_has_its_settings_and_no_motion_within_the_plane() -> None:
