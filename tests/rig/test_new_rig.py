@@ -2,7 +2,7 @@
 
 import tomllib
 from dataclasses import replace
-from math import exp, hypot, log, pi
+from math import exp, hypot, log, pi, sqrt
 from pathlib import Path
 
 import numpy as np
@@ -192,6 +192,19 @@ def test_the_inputs_known_least_come_first_and_each_measurement_once() -> None:
     assert len({one.remedy for one in listed}) == 3
 
 
+@pytest.mark.parametrize(("pin", "disc"), [("brass", "ceramic"), ("polymer", "brass")])
+def test_of_two_entries_that_one_measurement_gives_the_one_known_less_is_told(pin: str, disc: str) -> None:
+    # of the stiffness of both bodies, on which friction about the gap at rest depends
+    rig = rig_of(replace(KNOWN, pin=pin, disc=disc)).replace("friction.model", "dong_2015_half_period")
+    spreads = {}
+    for place in ("softer", "harder"):
+        low, high = rig.uncertainty[key := f"contact.{place}.youngs_modulus"].quantile((0.1587, 0.8413))
+        spreads[key] = log(high / low) / 2
+    told = [one for one in least_known(rig, count=20) if one.key in spreads]
+    assert [one.key for one in told] == [max(spreads, key=lambda key: spreads[key])]
+    assert told[0].deviation == approx(max(spreads.values()))
+
+
 def test_entries_that_change_no_friction_are_not_said_to_be_known_least() -> None:
     # the least known of all is the radius of the summits, which an exponential contact does not feel
     rig = rig_of(KNOWN)
@@ -328,6 +341,10 @@ def test_a_soft_body_is_a_layer_of_its_thickness_with_what_the_catalogue_knows_o
     assert table["model"] == '"soft_layer"'
     assert to_si(table["layer_thickness"].strip('"'), unit="m", name="layer") == approx(3e-3)
     assert set(table) == {"model", "layer_thickness", "dynamic_modulus_ratio", "layer_loss", "layer_density"}
+    # 1 to 10, 0.05 to 1 and 170 to 340 kg/m3, of which the catalogue takes the geometric means
+    assert float(table["dynamic_modulus_ratio"]) == approx(sqrt(10), rel=1e-3)
+    assert float(table["layer_loss"]) == approx(sqrt(0.05), rel=1e-3)
+    assert to_si(table["layer_density"].strip('"'), unit="kg/m3", name="density") == approx(sqrt(170 * 340), rel=1e-3)
     assert felt.assumptions["friction.layer_thickness"] == "as stated, on a rigid base"
     assert set(felt.assumptions) == {f"friction.{key}" for key in table if key != "model"}
     with raises(InvalidInput, match=r"layer_thickness is of a soft body, and .* is none"):

@@ -11,7 +11,8 @@ from scipy.special import ellipk
 from sonolube.errors import InvalidInput
 from sonolube.models.dynamics import drive_receptance
 from sonolube.models.friction import FRICTION_MODELS
-from sonolube.rig import Rig, operating_points, read_rig, simulate, structure_in_contact
+from sonolube.rig import Rig, operating_points, point_batch, read_rig, simulate, structure_in_contact
+from sonolube.rig.operating_point_batch import NUMBERS, STATUSES, _distinct, _shifted
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
 TRIBOMETER = read_rig(RIGS / "tribometer.toml")
@@ -132,3 +133,69 @@ def test_what_has_no_meaning_is_refused_by_name() -> None:
         operating_points(TRIBOMETER, frequency=[1e3, 2e3], normal_load=[1.0, 2.0, 3.0])
     with pytest.raises(InvalidInput, match=r"drive\.voltage_peak_to_peak is missing; give it to vary the voltage"):
         operating_points(read_rig(RIGS / "cutter_head.toml"), voltage_peak_to_peak=10.0)
+
+
+def test_a_batch_lists_the_points_by_its_last_axis_with_the_speeds_and_forces_of_their_sines() -> None:
+    # of 0.02 V the vibration is a sine to 1e-4, and friction is that without vibration where the sliding is fast
+    volts, loads = np.array([0.01, 0.02]), np.array([[3.0], [4.0], [5.0]])
+    batch = point_batch(TRIBOMETER, voltage_peak_to_peak=volts, normal_load=loads, sliding_speed=100.0)
+    assert set(batch.numbers) == set(NUMBERS)
+    amplitude = batch.numbers["vibration_amplitude"].reshape(3, 2)
+    assert amplitude[:, 1] == approx(2 * amplitude[:, 0], rel=1e-4)
+    assert batch.numbers["vibration_velocity"] == approx(2 * np.pi * 22e3 * amplitude.ravel(), rel=1e-3)
+    assert batch.numbers["friction_ratio"] == approx(np.ones(6), abs=1e-6)
+    assert batch.numbers["friction_reduction"] == approx(np.zeros(6), abs=1e-6)
+    assert batch.numbers["friction_force"] == approx(0.341 * np.repeat([3.0, 4.0, 5.0], 2), rel=1e-3)
+    assert batch.numbers["friction_coefficient"] == approx(np.full(6, 0.341), rel=1e-3)
+    assert [STATUSES[code] for code in batch.status] == ["periodic"] * 6
+    assert {batch.reasons[code] for code in batch.reason} == {"the vibration repeats with the drive"}
+
+
+def test_points_of_a_batch_that_stack_or_contact_rule_out_say_which_limit_they_are_beyond() -> None:
+    assert TRIBOMETER.stack is not None
+    rig = replace(TRIBOMETER, stack=replace(TRIBOMETER.stack, lowest_voltage=-20.0, highest_voltage=100.0))
+    volts, offset = np.array([28.0, 28.0, 28.0, 40.0, 40.0, 28.0]), np.array([14.0, -7.0, -5.9, 80.0, 80.1, 14.0])
+    load = np.array([3.0, 3.0, 3.0, 3.0, 3.0, 1e5])
+    batch = point_batch(rig, voltage_peak_to_peak=volts, voltage_offset=offset, normal_load=load)
+    reasons = [batch.reasons[code] for code in batch.reason]
+    assert [STATUSES[code] for code in batch.status] == [
+        "periodic", "refused", "periodic", "periodic", "refused", "refused"
+    ]  # fmt: skip
+    assert reasons[1] == "the drive goes too low: the lowest admissible voltage is -20.0 V"
+    assert reasons[4] == "the drive goes too high: the highest admissible voltage is 100.0 V"
+    assert reasons[5] == "normal_load leaves no separation between the surfaces: lower the load"
+    known = np.array([True, False, True, True, False, False])
+    for name in ("friction_ratio", "vibration_amplitude", "vibration_velocity", "friction_force"):
+        assert np.isfinite(batch.numbers[name]).tolist() == known.tolist()
+    alone = operating_points(rig, voltage_peak_to_peak=28.0, voltage_offset=-5.9)
+    assert batch.numbers["vibration_amplitude"][2] == approx(float(alone.vibration_amplitude))
+
+
+def test_points_at_rest_have_a_vibration_and_a_reason_for_no_friction() -> None:
+    batch = point_batch(TRIBOMETER, sliding_speed=[0.0, 0.05])
+    assert np.isnan(batch.numbers["friction_ratio"]).tolist() == [True, False]
+    assert batch.numbers["vibration_amplitude"] == approx([2.5e-6, 2.5e-6], rel=0.01)
+    assert "sliding_speed" in batch.reasons[batch.reason[0]]
+    assert batch.reasons[batch.reason[1]] == "the vibration repeats with the drive"
+
+
+def test_a_batch_of_a_stated_sine_has_its_amplitude_at_its_own_frequency_alone() -> None:
+    bush = read_rig(RIGS / "bronze_bush.toml")  # 2 um at 20 kHz
+    batch = point_batch(bush, frequency=[20e3, 25e3, 20e3], sliding_speed=[0.05, 0.05, 0.1])
+    assert batch.numbers["vibration_amplitude"] == approx([2e-6, np.nan, 2e-6], nan_ok=True)
+    assert batch.numbers["vibration_velocity"][0] == approx(2 * np.pi * 20e3 * 2e-6)
+    assert [STATUSES[code] for code in batch.status] == ["periodic", "refused", "periodic"]
+    assert "holds at 20 kHz only" in batch.reasons[batch.reason[1]]
+    assert batch.reason[0] == batch.reason[2]
+    ratio = batch.numbers["friction_ratio"]
+    assert ratio[0] < ratio[2] < 1  # the faster the sliding, the less it gains
+
+
+def test_refusals_follow_the_statuses_and_each_distinct_condition_is_kept_once() -> None:
+    found = _shifted(np.array([0, 3, 0, 0], dtype=np.int16), np.array([0, 0, 1, 3], dtype=np.int16))
+    assert found.tolist() == [0, 3, 4, 6]  # behind four statuses
+    columns = np.array([[1.0, 2.0, 1.0, 1.0, 2.0], [5.0, 5.0, 5.0, 6.0, 5.0], [0.0] * 5, [3.0, 3.0, 3.0, 3.0, 4.0]])
+    first, which = _distinct(columns)
+    assert sorted(first.tolist()) == [0, 1, 3, 4]
+    assert columns[:, first[which]].tolist() == columns.tolist()
+    assert which[0] == which[2]
