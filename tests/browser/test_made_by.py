@@ -1,6 +1,7 @@
 """Commands and remarks of what is taken away: options, files by name, seeds, and programs in Python and notebooks."""
 
 import json
+import re
 from typing import Any
 
 import pytest
@@ -14,6 +15,7 @@ from sonolube.errors import InvalidInput, UnknownName
 from sonolube.tasks.table import task_named
 
 RIG = {"name": "own", "changes": {"contact.normal_load": "4 N"}}
+TYPED = {"name": "tribometer", "changes": {"contact.normal_load": "4 N"}}
 NOWHERE = Places(rigs={})
 UPLOAD = {"name": "my runs.csv", "upload": "00ff"}
 CONTENT = {"name": "b.csv", "content": "YQ=="}
@@ -155,8 +157,15 @@ def test_tables_of_an_answer_are_one_below_the_other_and_a_report_has_its_text()
     assert heads == "property,value,source"
     assert rows[-1] == ""
     assert (file["name"], file["kind"]) == ("materials.csv", "text/csv")
-    report = taken({"form": "report", "task": "friction", "arguments": {"rig": {"name": "tribometer"}}}, NOWHERE)
+    report = taken({"form": "report", "task": "friction", "arguments": {"rig": TYPED}}, NOWHERE)
     assert report["name"] == "tribometer-friction.html"
     assert "Modified pin-on-disc tribometer" in report["text"]
     assert "made by" in report["text"]
     assert "assumed " in report["text"]
+    rows = dict(re.findall(r'<tr><th scope="row">([^<]+)</th><td>([^<]*)</td></tr>', report["text"]))
+    assert rows["rig"].startswith("Modified pin-on-disc tribometer")
+    assert (rows["changed"], rows["interval"]) == ("contact.normal_load=4 N", "yes (default)")
+    assert rows["made by"].startswith(f"sonolube {__version__}: sonolube friction tribometer.toml")
+    of_no_rig = taken({"form": "report", "task": "materials", "arguments": {"name": "aluminium_2024"}}, NOWHERE)
+    assert of_no_rig["name"] == "materials.html"
+    assert "made by" in of_no_rig["text"]

@@ -266,6 +266,17 @@ def test_only_the_head_of_a_long_text_is_looked_at_up_to_a_whole_line(tmp_path: 
     assert heads == [b"ab\n", b"abcde"]
 
 
+def test_a_text_is_long_beyond_a_mebibyte_and_half_of_one_is_its_head(tmp_path: Path, monkeypatch: MonkeyPatch) -> None:
+    path, heads = tmp_path / "long.csv", list[int]()
+    monkeypatch.setattr(recordings, "file_path", lambda file: heads.append(len(file.content)))
+    path.write_bytes(b"0123456789abcde\n" * (2**20 // 16))
+    assert recordings._head(path) == path
+    with path.open("ab") as stream:
+        stream.write(b"0")
+    recordings._head(path)
+    assert heads == [2**19]
+
+
 @pytest.mark.parametrize(("degree", "is_taken"), [(0, True), (12, True), (13, False), (-1, False), (1.0, False)])
 def test_the_form_of_a_scan_has_a_degree_up_to_twelve(degree: Any, is_taken: bool, tmp_path: Path) -> None:
     np.save(tmp_path / "a.npy", 1e-6 * np.random.default_rng(1).standard_normal((20, 20)))

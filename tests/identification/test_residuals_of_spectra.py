@@ -111,6 +111,15 @@ def test_a_capacitance_has_a_phase_of_ninety_degrees_at_every_point() -> None:
     assert np.angle(found) == approx(np.full(60, np.pi / 2), abs=1e-6)
 
 
+@mark.parametrize(("power", "phase"), [(2.5, np.pi / 2), (-2.5, -np.pi / 2), (0.0, 0.0)])
+def test_a_phase_is_that_of_the_slope_of_the_magnitude_within_a_quarter_turn(power: float, phase: float) -> None:
+    # half of pi for each power of the frequency; passive parts turn by no more than half of pi
+    f = np.geomspace(10, 1e7, 2001)
+    found = minimum_phase_admittance(1e-6 * f**power, frequency=f)
+    assert np.angle(found[1000]) == approx(phase, abs=0.02)
+    assert np.max(np.abs(np.angle(found))) <= np.pi / 2 + 1e-12
+
+
 def test_spectra_of_too_few_points_and_impossible_levels_are_refused() -> None:
     seven, eight = (spectrum(frequency=np.linspace(1e3, 2e3, count)) for count in (7, 8))
     stack = PiezoStack(free_capacitance=360e-9, free_stroke_per_volt=6e-9, stack_stiffness=2e9, stack_damping=300.0)

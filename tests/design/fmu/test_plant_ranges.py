@@ -1,6 +1,7 @@
 """Ranges of an exported plant by hand, and the variable that takes the place of the speed in its tables."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -9,8 +10,10 @@ from pytest import approx, raises
 
 from sonolube.design.fmu.chebyshev import ChebyshevTable
 from sonolube.design.fmu.plant import PlantTables, plant_ranges, reduced_speed, speed_over_scale
+from sonolube.design.fmu.tabulation import _tables
 from sonolube.errors import InvalidInput
 from sonolube.rig import VOLTAGE, read_rig
+from sonolube.rig.resolved_rig import resolved_rig
 
 RIGS = "examples/rigs"
 COLLAR = read_rig(f"{RIGS}/collar.toml")  # 28 V at 25 kHz, a sine of its amplitude per volt
@@ -118,3 +121,32 @@ def test_friction_by_tables_is_slow_below_the_threshold_and_fast_above() -> None
 def test_a_resonance_takes_a_current_where_its_conductance_is_known() -> None:
     assert not tables().has_current
     assert tables(resonance={"motional_conductance": constant(0.2, 1)}).has_current
+
+
+class Steady:
+    """Operating points whose amplitude follows the voltage above some load, and is that of 28 V below it."""
+
+    def __init__(self, follows_above: float) -> None:
+        self.follows_above, self.ranges, self.resolved = follows_above, plant_ranges(DRIVEN), resolved_rig(DRIVEN)
+
+    def __call__(self, level: Any, frequency: Any, load: Any, speed: Any) -> Any:
+        level, _, load, speed = np.broadcast_arrays(level, frequency, load, speed)
+        amplitude = 1e-7 * np.where(load > self.follows_above, level, 28.0)
+        return SimpleNamespace(
+            vibration_amplitude=amplitude, vibration_velocity=1e5 * amplitude, amplitude_source="measured",
+            friction_ratio=np.full(level.shape, 0.5),
+        )  # fmt: skip
+
+
+def test_tables_have_the_amplitude_per_volt_and_are_refused_where_it_is_not_that_at_some_load_alone() -> None:
+    constant = ChebyshevTable(ends=((2.4, 3.75),), coefficients=np.ones(1))
+    follows: Any = Steady(0.0)
+    tables = _tables(follows, constant, False, (3, 2, 3, 2))
+    assert float(tables.amplitude_per_level(14.0, 22e3, 3.0)) == approx(1e-7)
+    assert float(tables.velocity_per_level(14.0, 22e3, 3.0)) == approx(1e-2)
+    for follows_above in (3.0, 10.0):
+        stuck: Any = Steady(follows_above)
+        with raises(
+            InvalidInput, match="the amplitude measured does not follow the voltage; choose the amplitude comp"
+        ):
+            _tables(stuck, constant, False, (3, 2, 3, 2))

@@ -6,6 +6,8 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 from nidaqmx.constants import TerminalConfiguration
+from nidaqmx.error_codes import DAQmxErrors
+from nidaqmx.errors import DaqError
 from pytest import MonkeyPatch, approx, raises
 from tests.laboratory.daqmx_device import CLOCK, DaqmxDevice, install
 
@@ -13,6 +15,7 @@ from sonolube.errors import InvalidInput, MissingPackage
 from sonolube.laboratory import DeviceError, DeviceLost, DriveSetting, SamplesLost
 from sonolube.laboratory.drivers import DaqmxAcquisition, DaqmxDrive, DaqmxMotor, DriveLimits
 from sonolube.laboratory.drivers.daqmx_acquisition import DaqmxAcquisitionEntry, tabulated_scale
+from sonolube.laboratory.drivers.daqmx_library import daqmx_errors
 from sonolube.laboratory.drivers.daqmx_output import DaqmxDriveEntry, DaqmxMotorEntry, whole_periods
 
 LIMITS = DriveLimits(amplifier_gain=20.0, actuator_voltage=80.0, output_voltage=5.0, frequency_maximum=100e3)
@@ -94,6 +97,33 @@ def test_an_error_of_the_driver_is_that_of_a_device_in_one_line_with_its_number(
     assert str(code) in str(failure.value)
     assert "\n" not in str(failure.value)
     here.close()
+
+
+LOST_SAMPLES = (
+    "SAMPLES_NO_LONGER_AVAILABLE", "ACQ_STOPPED_TO_PREVENT_INPUT_BUFFER_OVERWRITE",
+    "ACQ_STOPPED_TO_PREVENT_INTERMEDIATE_BUFFER_OVERFLOW", "INPUT_FIFO_OVERFLOW", "INPUT_FIFO_OVERFLOW_2",
+    "INPUT_FIFO_OVERFLOW_3", "ACQ_STOPPED_TO_PREVENT_INPUT_BUFFER_OVERWRITE_ONE_DATA_XFER_MECH",
+    "ACQ_STOPPED_DRIVER_CANT_XFER_DATA_FAST_ENOUGH", "PAL_TRANSFER_OVERWRITTEN",
+)  # fmt: skip
+GONE = (
+    "DEV_ABSENT_OR_UNAVAILABLE", "INVALID_DEVICE_ID", "HARDWARE_NOT_RESPONDING", "DEVICE_REMOVED",
+    "DEV_CANNOT_BE_ACCESSED", "DEVICE_NOT_USABLE_UNTIL_USB_REPLUG", "NETWORK_STATUS_CONNECTION_LOST",
+    "NETWORK_STATUS_DOWN", "NETWORK_TARGET_UNREACHABLE", "NETWORK_TARGET_NOT_FOUND", "NETWORK_STATUS_TIMED_OUT",
+    "DEVICE_NAME_NOT_FOUND_ROUTING", "RUNTIME_ABORTING_ROUTING", "RUNTIME_ABORTED_ROUTING",
+    "DRIVER_DEVICE_GUID_NOT_FOUND_ROUTING", "DEV_ABSENT_OR_UNAVAILABLE_ROUTING", "PAL_USB_TRANSACTION_ERROR",
+    "PAL_TRANSFER_ABORTED", "PAL_TRANSFER_STOPPED", "PAL_COMMUNICATIONS_FAULT", "PAL_TRANSFER_TIMED_OUT",
+    "PAL_DEVICE_NOT_FOUND",
+)  # fmt: skip
+
+
+def test_every_error_of_a_lost_device_and_of_lost_samples_is_known_by_its_name_in_the_package() -> None:
+    kinds = {**dict.fromkeys(LOST_SAMPLES, SamplesLost), **dict.fromkeys(GONE, DeviceLost)}
+    for name, kind in (kinds | {"SAMPLES_NOT_YET_AVAILABLE": DeviceLost, "PAL_RESOURCE_BUSY": DeviceError}).items():
+        code = DAQmxErrors[name].value
+        with raises(DeviceError, match=rf"\(NI-DAQmx {code}\)") as failure, daqmx_errors("card"):
+            raise DaqError("of the driver", code)
+        assert type(failure.value) is kind, name
+        assert str(failure.value).startswith("card: ")
 
 
 @pytest.mark.parametrize("call", ["create_ai_voltage_chan", "cfg_samp_clk_timing", "start_task", "create_task"])

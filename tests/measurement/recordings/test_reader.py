@@ -1,7 +1,9 @@
 """Recordings of every format against the data they were written from, in SI with provenance."""
 
 import hashlib
+import os
 import struct
+import sys
 from pathlib import Path
 
 import h5py
@@ -14,7 +16,7 @@ from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping, read_mapping
-from sonolube.measurement.recordings.reader import read_recording, recording_blocks, write_recording
+from sonolube.measurement.recordings.reader import read_recording, recording_blocks, recording_format, write_recording
 
 CORPUS = Path(__file__).parent / "corpus"
 ROOT = Path(__file__).parents[3]
@@ -32,6 +34,25 @@ def test_a_csv_file_is_read_in_si_with_its_provenance() -> None:
     assert recording.attrs["sha256"] == hashlib.sha256(path.read_bytes()).hexdigest()
     assert recording.attrs["sample_rate"] == 2.0
     assert "note" not in recording
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pipes among its paths")
+@pytest.mark.parametrize(
+    ("content", "is_text"), [(b"time [s],friction force [N]\n0,1\n1,2\n2,3\n", True), (b"\x89HDF\r\n\x1a\n" * 9, False)]
+)
+def test_only_text_is_read_from_a_pipe_since_readers_of_other_formats_go_back(content: bytes, is_text: bool) -> None:
+    reading, writing = os.pipe()
+    try:
+        os.write(writing, content)
+        os.close(writing)
+        path = Path(f"/dev/fd/{reading}")
+        if is_text:
+            assert recording_format(path).name == "delimited text"
+        else:
+            with raises(InvalidInput, match="is a pipe, which this format cannot be read from"):
+                recording_format(path)
+    finally:
+        os.close(reading)
 
 
 def test_a_mapping_gives_names_units_and_calibration(tmp_path: Path) -> None:

@@ -57,6 +57,28 @@ def test_objects_in_an_npy_file_are_not_unpickled(tmp_path: Path) -> None:
         read_height_map(tmp_path / "plate.npy", spacing_x=1, spacing_y=1)
 
 
+@mark.parametrize(
+    ("content", "stated"),
+    [
+        (np.zeros((2, 3, 4)), r"\(2, 3, 4\) of float64"),
+        (np.array([["1", "2"]]), r"\(1, 2\) of <U1"),
+        (np.ones((2, 2), dtype=bool), r"\(2, 2\) of bool"),
+        (np.ones((2, 2), dtype=complex), r"\(2, 2\) of complex128"),
+    ],
+)
+def test_what_is_no_matrix_of_numbers_in_an_npy_file_is_refused(content: Any, stated: str, tmp_path: Path) -> None:
+    np.save(tmp_path / "plate.npy", content)
+    with raises(InvalidInput, match=rf"heights are a matrix of numbers, got shape {stated}"):
+        read_height_map(tmp_path / "plate.npy", spacing_x=1, spacing_y=1)
+
+
+@mark.parametrize("kind", ["i2", "u1", ">f4"])
+def test_numbers_of_any_kind_in_an_npy_file_are_heights(kind: str, tmp_path: Path) -> None:
+    np.save(tmp_path / "plate.npy", np.array([[1, 2, 3], [4, 5, 6]], dtype=kind))
+    found = read_height_map(tmp_path / "plate.npy", spacing_x=1e-6, spacing_y=1e-6, length_unit="nm")
+    assert np.sort(found.height, axis=None) == approx(1e-9 * np.arange(1, 7))
+
+
 def test_a_profile_in_an_npy_file_is_refused(tmp_path: Path) -> None:
     np.save(tmp_path / "plate.npy", STEP[0])
     with raises(InvalidInput, match=r"a matrix of numbers, got shape \(3,\)"):
