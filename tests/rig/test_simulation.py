@@ -1,5 +1,6 @@
 """The multi-scale model of the tribometer: what the dissertation says of it, and what holds whatever the numbers."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from sonolube.errors import InvalidInput
 from sonolube.models.contact import normal_force, separation
 from sonolube.models.friction import FRICTION_MODELS
 from sonolube.rig import Simulation, read_rig, simulate, start_up
+from sonolube.rig.responses import simulation_arrays
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
 
@@ -119,3 +121,39 @@ def test_a_rig_without_structure_vibrates_as_a_sine_of_its_stated_amplitude() ->
     assert result.vibration.vibration_amplitude == approx(2.17e-6, rel=1e-3)  # 77.55 nm/V at 28 V
     assert result.vibration.amplitude_source == "per-volt"
     assert result.vibration.dissipated_power is None
+
+
+def test_the_arrays_of_a_simulation_hold_one_period_and_the_numbers_of_its_result() -> None:
+    rig = read_rig(RIGS / "tribometer.toml")
+    arrays = simulation_arrays(rig, DRIVEN)
+    time, moved, pressed = (np.asarray(arrays[name].values) for name in ("time", "displacement", "normal_force"))
+    assert time[0] == 0.0
+    assert np.diff(time) == approx(np.full(time.size - 1, 1 / 22e3 / time.size))  # the next period begins at its end
+    turned = np.exp(-2j * np.pi * 22e3 * time)
+    assert 2 * abs(np.mean(moved * turned)) == approx(2.5e-6, rel=1e-3)
+    assert np.mean(pressed) == approx(3.0, rel=1e-3)
+    assert "displacement_along" not in arrays.variables
+    numbers = {name: float(arrays[name].values) for name in ("friction_ratio", "friction_reduction", "actuator_power")}
+    assert numbers["friction_ratio"] + numbers["friction_reduction"] == approx(1.0)
+    assert numbers["actuator_power"] == approx(360e-9 * 28.0**2 * 22e3)  # D 1.9
+    about = arrays.attrs
+    assert (about["normal_load_N"], about["contact_loss_fraction"]) == approx((3.0, 0.0))
+    assert about["mean_displacement_m"] == approx(np.mean(moved), rel=1e-3)
+    assert float(normal_force(rig.contact, separation=about["separation_at_rest_m"])) == approx(3.0)
+    assert (about["result"], about["interval"]) == ("simulation", "one period of the drive")
+    assert about["assumptions"].splitlines()[0].startswith("vibration.normal_load: measured by")
+
+
+@pytest.mark.parametrize(
+    ("periods", "interval"),
+    [
+        (1, "one period of the drive"),
+        (2, "2 periods of the drive, after which the motion repeats"),
+        (0, "a stretch of a motion that does not repeat: aperiodic"),
+    ],
+)
+def test_the_interval_of_a_motion_is_told_by_the_periods_after_which_it_repeats(periods: int, interval: str) -> None:
+    motion = replace(DRIVEN.vibration, repetition_periods=periods, attractor="aperiodic")
+    found = simulation_arrays(read_rig(RIGS / "tribometer.toml"), replace(DRIVEN, vibration=motion))
+    assert found.attrs["interval"] == interval
+    assert found.attrs["repetition_periods"] == periods
