@@ -198,3 +198,21 @@ def test_refusals_follow_the_statuses_and_each_distinct_condition_is_kept_once()
     first, which = _distinct(columns)
     assert sorted(first.tolist()) == [0, 1, 3, 4]
     assert first[which].tolist() == [0, 1, 0, 3, 4]  # of each, the column that it equals
+
+
+@pytest.mark.parametrize(
+    ("voltage", "frequency", "load", "status", "told"),
+    [
+        (65.8644, 22436.58, 61.209, "unstable", "small disturbances grow"),
+        (570.5942, 446.00634, 95.5875, "multistable", "another vibration is stable too"),
+        (1041.759, 452.8423, 72.3823, "not_converged", "no vibration at the drive's own period was found"),
+    ],
+)
+def test_a_point_of_a_batch_without_one_steady_vibration_says_which_it_is(
+    voltage: float, frequency: float, load: float, status: str, told: str
+) -> None:
+    rig = read_rig(RIGS / "tribometer.toml", changes=["vibration.amplitude_source=computed", "drive.voltage_offset=0V"])
+    asked = {"voltage_peak_to_peak": voltage, "frequency": frequency, "normal_load": load}
+    found, alone = point_batch(rig, **asked), operating_points(rig, **asked)
+    assert STATUSES[found.status[0]] == status == str(alone.status.ravel()[0])
+    assert told in found.reasons[found.reason[0]]

@@ -141,7 +141,7 @@ def point_batch(
     distinct = columns[:, first]
     rest = separation(rig.contact, normal_load=distinct[-1])
     refusal, reasons = _refusals(resolved, distinct, rest)
-    status, reason = np.full(first.size, _REFUSED, dtype=np.int8), refusal
+    status, reason = np.full(first.size, _REFUSED, dtype=np.int8), refusal.copy()
     numbers = np.full((5, first.size), np.nan)
     friction = _no_friction(speeds.size)
     possible = np.flatnonzero(refusal == 0)
