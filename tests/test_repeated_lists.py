@@ -18,12 +18,12 @@ from sonolube.identification.stack_fit import RESIDUALS
 from sonolube.laboratory import devices
 from sonolube.laboratory.devices import Devices
 from sonolube.laboratory.drivers import driver_table, function_generator
-from sonolube.laboratory.interlocks import interlocks_for
+from sonolube.laboratory.interlocks import RunLimits, interlocks_for
 from sonolube.laboratory.records import observation
 from sonolube.laboratory.records.recording_files import EXPORT_FORMATS
 from sonolube.laboratory.records.run_folder import read_run_facts
 from sonolube.laboratory.records.set_point_steps import SET_POINT_CHANNELS
-from sonolube.laboratory.run_plan import RunPlan, begin_record
+from sonolube.laboratory.run_plan import RunRequest, begin_record
 from sonolube.measurement import recorded_conditions
 from sonolube.models.dynamics.waveform import RAMP_SHAPES, WAVEFORMS
 from sonolube.rig.file.sections import DriveSection
@@ -105,7 +105,9 @@ def test_every_entry_of_the_metadata_of_a_protocol_is_a_fact_of_its_run(tmp_path
     content = {"title": "a", "source": "b", "limits": {"voltage_maximum": "1 V", "duration_maximum": "1 s"}}
     protocol = protocol_from(content | {"metadata": given, "steps": [{"kind": "wait", "duration": "1 s"}]})
     stand_in = SimpleNamespace(switch_off=None, simulated=False, description={}, channels={}, groove_diameter=0.05)
-    recorder = begin_record(RunPlan(protocol=protocol, name="a", rig=None), cast(Devices, stand_in), out=tmp_path)
+    request = RunRequest(protocol=protocol, name="a", rig=None)
+    limits = RunLimits(stated=protocol.limits, locks=(), off=(), drive=None)
+    recorder = begin_record(request, cast(Devices, stand_in), limits, out=tmp_path)
     known = read_run_facts(recorder.folder).facts
     recorder.finish("completed")
     of_bodies = {"pin_material", "disc_material"}  # which a run without a rig has in its protocol

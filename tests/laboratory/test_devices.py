@@ -13,8 +13,8 @@ from sonolube.facts.protocol import Limits
 from sonolube.laboratory import Block, Channel, DeviceError, Devices, RunControl, connect_devices
 from sonolube.laboratory.block import quantity_of
 from sonolube.laboratory.devices import switch_outputs_off
-from sonolube.laboratory.interlocks import Interlock
-from sonolube.laboratory.standing_rig import off_bounds, still_on
+from sonolube.laboratory.interlocks import Interlock, off_bounds
+from sonolube.laboratory.standing_rig import still_on
 from sonolube.laboratory.states import Event, RunEnded, RunState, State, after, ending, release_devices, tried
 
 

@@ -28,8 +28,9 @@ from sonolube.laboratory import (
     run_protocol,
     supervision,
 )
+from sonolube.laboratory.interlocks import recorded_channels
 from sonolube.laboratory.records import RunObserver, drop_raw_blocks, export_run, new_run, read_run, recover_run
-from sonolube.laboratory.run_plan import RunPlan
+from sonolube.laboratory.run_plan import planned_run
 from sonolube.measurement import read_recording
 from sonolube.measurement.measured_files import selected_files
 
@@ -354,15 +355,18 @@ def test_a_fast_clock_shows_a_drive_that_the_clock_of_the_run_does_not(tmp_path:
     known = replace(devices(rig, inputs()), acquisition=_without(rig, "voltage", "current"))
     read = protocol(channels=("friction_force", "voltage", "current"))
     limited = read.model_copy(update={"limits": read.limits.model_copy(update={"current_maximum": 1.0})})
-    plan = RunPlan(protocol=limited, name="p", rig=None)
     assert impossibilities(limited, replace(known, further={"fast": fast})) == ()
-    assert plan.unresolved(replace(known, further={"fast": fast})) == ""
+    assert unresolved(limited, replace(known, further={"fast": fast})) == ""
     blind = replace(
         known, further={"fast": Inputs({n: replace(c, sample_rate=50e3) for n, c in fast.channels.items()})}
     )
     (fault,) = impossibilities(limited, blind)
     assert "current at 50 kHz does not resolve the drive" in fault
-    assert replace(plan, protocol=read).unresolved(blind).startswith("voltage and current at 50 kHz do not resolve")
+    assert unresolved(read, blind).startswith("voltage and current at 50 kHz do not resolve")
+
+
+def unresolved(read: Protocol, of: Devices) -> str:
+    return planned_run(read, of).limits.unresolved(recorded_channels(read), of.channels)
 
 
 def _without(rig: SimulatedRig, *names: str) -> SimulatedRig:
@@ -383,7 +387,8 @@ def test_begin_gives_up_where_a_device_does_not_start(release: Event, monkeypatc
     monkeypatch.setattr(own_clocks, "_ENDING", 0.2)
     slow = inputs()
     slow.connect = lambda: release.wait()  # type: ignore[method-assign, assignment]
-    clocks = own_clocks.OwnClocks(devices(PacedRig(), slow), ())
+    of = devices(PacedRig(), slow)
+    clocks = own_clocks.OwnClocks(of, planned_run(protocol(), of).limits)
     with raises(DeviceError, match="slow inputs: did not start within"):
         clocks.begin(lambda: None)
     with raises(DeviceError, match="slow inputs: did not return"):

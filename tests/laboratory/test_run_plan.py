@@ -12,18 +12,18 @@ from tests.laboratory.simulated_rig import SimulatedRig
 
 from sonolube.errors import InvalidInput, SeveralFaults
 from sonolube.facts.protocol import Check, Protocol, SetPoint, protocol_from
-from sonolube.laboratory import Channel, DriveSetting
-from sonolube.laboratory.interlocks import DriveSampling
+from sonolube.laboratory import Channel, Devices, DriveSetting
+from sonolube.laboratory.interlocks import DriveSampling, RunLimits, recorded_channels, run_limits
 from sonolube.laboratory.records import read_run
 from sonolube.laboratory.run_plan import (
     CheckedValue,
-    RunPlan,
+    RunRequest,
     begin_record,
     drive_setting,
     groove_diameter,
     highest_of_steps,
     impossibilities,
-    require_possible,
+    planned_run,
     rotation_speed,
     speed_checks,
 )
@@ -146,13 +146,13 @@ def test_channels_that_are_missing_are_told_by_the_step_that_records_them() -> N
 
 def test_one_impossibility_is_refused_by_itself_and_several_together() -> None:
     rig = SimulatedRig().devices()
-    require_possible(protocol(), rig)
+    planned_run(protocol(), rig)
     with raises(InvalidInput) as one:
-        require_possible(protocol(drive(202.0), WAIT), rig)
+        planned_run(protocol(drive(202.0), WAIT), rig)
     assert str(one.value) == "step 1: the drive reaches 101 V; simulated rig gives at most 100 V"
     assert not isinstance(one.value, SeveralFaults)
     with raises(SeveralFaults) as two:
-        require_possible(protocol(drive(202.0), WAIT, friction_force_maximum="30 N"), rig)
+        planned_run(protocol(drive(202.0), WAIT, friction_force_maximum="30 N"), rig)
     assert two.value.faults == (
         "limits.friction_force_maximum of 30 N lies beyond the range of channel friction_force, 20 N",
         "step 1: the drive reaches 101 V; simulated rig gives at most 100 V",
@@ -163,13 +163,32 @@ def test_what_a_run_does_not_show_of_its_drive_is_told_by_recorded_and_watched_c
     rig = SimulatedRig().devices()
     few = "resolve the drive (fewer than five samples a period)"
     forces = protocol(acquire("friction_force"), drive(20.0), WAIT, voltage_maximum="100 V")
-    recorded = RunPlan(protocol=forces, name="t", rig=None)
-    assert recorded.unresolved(rig) == f"voltage at 100 Hz does not {few}"  # which its limit watches
+    assert unresolved(forces, rig) == f"voltage at 100 Hz does not {few}"  # which its limit watches
     current = protocol(acquire("current"), drive(20.0), WAIT, voltage_maximum="100 V")
-    assert replace(recorded, protocol=current).unresolved(rig) == f"voltage and current at 100 Hz do not {few}"
-    assert replace(recorded, protocol=protocol(WAIT, voltage_maximum="100 V")).unresolved(rig) == ""
+    assert unresolved(current, rig) == f"voltage and current at 100 Hz do not {few}"
+    assert unresolved(protocol(WAIT, voltage_maximum="100 V"), rig) == ""
     fast = DriveSampling(sample_rate=1e6, frequency=22e3)
-    assert replace(recorded, drive=fast).unresolved(rig) == ""
+    assert run_limits(forces.limits, rig, fast).unresolved(recorded_channels(forces), rig.channels) == ""
+
+
+def test_the_plan_of_a_run_has_its_limits_and_first_setting_once() -> None:
+    rig = SimulatedRig().devices()
+    steps = acquire("friction_force"), turn("2 1/s"), drive(20.0), WAIT, drive(30.0), WAIT
+    plan = planned_run(protocol(*steps, voltage_maximum="100 V"), rig)
+    assert plan.first_setting == DriveSetting(voltage_peak_to_peak=20.0, frequency=22e3)
+    assert (plan.limits.frequency, plan.groove_diameter, plan.idle_rate) == (22e3, 0.05, 100.0)
+    assert [(lock.channel.name, lock.limit) for lock in plan.limits.locks] == [("voltage", 100.0)]
+    assert [(what, lock.channel.name, lock.limit) for what, lock in plan.limits.off] == [("drive", "voltage", 5.0)]
+    undriven = planned_run(protocol(acquire("friction_force"), WAIT), rig)
+    assert (undriven.first_setting, undriven.limits.frequency) == (None, 0.0)
+
+
+def unresolved(read: Protocol, devices: Devices) -> str:
+    return planned_run(read, devices).limits.unresolved(recorded_channels(read), devices.channels)
+
+
+def limits_of(request: RunRequest, devices: Devices) -> RunLimits:
+    return planned_run(request.protocol, devices).limits
 
 
 SPECIMEN = {"specimen": "A3", "operator": "D", "humidity": "45 %", "run": 4}
@@ -180,7 +199,7 @@ def test_the_record_of_a_plan_has_its_files_and_everything_that_is_known_of_it(t
     rig = replace(read_rig(RIG), pin_material="brass_c36000", disc_material="stainless_steel_304")
     map_file = tmp_path / "bench.toml"
     map_file.write_text("title = 'bench'\n")
-    plan = RunPlan(
+    request = RunRequest(
         protocol=protocol(metadata=METADATA, voltage_maximum="100 V"),
         name="map_test",
         rig=rig,
@@ -190,7 +209,7 @@ def test_the_record_of_a_plan_has_its_files_and_everything_that_is_known_of_it(t
         facts={"operator": "E", "calibrated": "2026-03-01"},
     )
     devices = replace(SimulatedRig().devices(), description={"rig": "simulated", "drive hardware": "x"})
-    recorder = begin_record(plan, devices, out=tmp_path / "runs", facts={"queue": 3})
+    recorder = begin_record(request, devices, limits_of(request, devices), out=tmp_path / "runs", facts={"queue": 3})
     run = read_run(recorder.finish("completed").folder)
     assert run.summary.title == "a test"
     assert set(run.known.files) == {"protocol.toml", "devices.toml"}  # a rig that was changed has no file
@@ -219,9 +238,9 @@ def test_the_record_of_a_plan_has_its_files_and_everything_that_is_known_of_it(t
 
 
 def test_the_record_of_a_plan_without_rig_tags_or_simulation_has_none_of_their_facts(tmp_path: Path) -> None:
-    plan = RunPlan(protocol=protocol(voltage_maximum="100 V"), name="t", rig=None)
+    request = RunRequest(protocol=protocol(voltage_maximum="100 V"), name="t", rig=None)
     devices = replace(SimulatedRig().devices(), simulated=False)
-    run = read_run(begin_record(plan, devices, out=tmp_path).finish("completed").folder)
+    run = read_run(begin_record(request, devices, limits_of(request, devices), out=tmp_path).finish("completed").folder)
     assert dict(run.facts) == {
         "protocol": "t",
         "simulated": False,
@@ -230,7 +249,9 @@ def test_the_record_of_a_plan_without_rig_tags_or_simulation_has_none_of_their_f
         "groove_diameter": 0.05,
     }
     assert set(run.known.files) == {"protocol.toml"}
-    of_rig = RunPlan(protocol=protocol(voltage_maximum="100 V"), name="t", rig=read_rig(RIG))
-    with_rig = read_run(begin_record(of_rig, devices, out=tmp_path).finish("completed").folder)
+    of_rig = RunRequest(protocol=protocol(voltage_maximum="100 V"), name="t", rig=read_rig(RIG))
+    with_rig = read_run(
+        begin_record(of_rig, devices, limits_of(of_rig, devices), out=tmp_path).finish("completed").folder
+    )
     assert with_rig.facts["normal_load"] == 5.0
     assert set(with_rig.known.files) == {"protocol.toml", "rig.toml"}

@@ -212,7 +212,7 @@ def test_a_point_of_a_batch_without_one_steady_vibration_says_which_it_is(
     voltage: float, frequency: float, load: float, status: str, told: str
 ) -> None:
     rig = read_rig(RIGS / "tribometer.toml", changes=["vibration.amplitude_source=computed", "drive.voltage_offset=0V"])
-    asked = {"voltage_peak_to_peak": voltage, "frequency": frequency, "normal_load": load}
-    found, alone = point_batch(rig, **asked), operating_points(rig, **asked)
+    found = point_batch(rig, voltage_peak_to_peak=voltage, frequency=frequency, normal_load=load)
+    alone = operating_points(rig, voltage_peak_to_peak=voltage, frequency=frequency, normal_load=load)
     assert STATUSES[found.status[0]] == status == str(alone.status.ravel()[0])
     assert told in found.reasons[found.reason[0]]

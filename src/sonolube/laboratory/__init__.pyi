@@ -19,7 +19,7 @@ from .devices import (
 )
 from .interlocks import Interlock as Interlock, first_trip as first_trip, interlocks_for as interlocks_for
 from .own_clocks import OwnClocks as OwnClocks
-from .run_plan import impossibilities as impossibilities, require_possible as require_possible
+from .run_plan import RunPlan as RunPlan, impossibilities as impossibilities, planned_run as planned_run
 from .runner import run_protocol as run_protocol
 from .states import (
     OUTCOMES as OUTCOMES,

@@ -10,7 +10,7 @@ import numpy as np
 from sonolube.errors import InvalidInput, SeveralFaults
 from sonolube.facts.protocol import Limits, Protocol, SetPoint, flattened
 from sonolube.laboratory.block import Block, Channel
-from sonolube.laboratory.devices import DriveSetting
+from sonolube.laboratory.devices import Devices, DriveSetting
 from sonolube.text.units import format_si
 
 SAMPLES_PER_PERIOD: Final = 5
@@ -125,6 +125,9 @@ _WATCHED: Final[Mapping[str, Sequence[str]]] = {  # channels by the limit that t
     "friction_force_maximum": ("friction_force",),
 }
 _SET_POINTS: Final = ("voltage_maximum", "duration_maximum")  # held to by set points where no channel measures them
+_OFF_SHARE: Final = 0.05  # of the limit of the voltage, below which the drive counts as off
+_OFF_VOLTAGE: Final = 1.0  # V, at least, for the offsets of monitors
+_STILL_SHARE: Final = 0.01  # of the speed of the motor, below which the disc counts as at rest
 _ROUNDING: Final = 1 + 1e-9
 _OF_LIMIT: Final = {
     "current_rms": 0.5**0.5,
@@ -231,6 +234,74 @@ def _fault(name: str, watched: str, locks: Sequence[Interlock], drive: DriveSamp
     return (
         f"limits.{name} cannot be watched: {reason}; record at {needed} or more, add {others}, or leave the limit out"
     )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RunLimits:
+    """Limits of a run as channels and set points are held to them, made once, before anything is connected.
+
+    Parameters
+    ----------
+    stated : Limits
+        By the protocol.
+    locks : tuple of Interlock
+        Of channels while the run samples.
+    off : tuple of (str, Interlock)
+        Bounds of channels that show whether drive or motor are off, with which of them.
+    drive : DriveSampling or None
+        None where nothing is driven.
+    """
+
+    stated: Limits
+    locks: tuple[Interlock, ...]
+    off: tuple[tuple[str, Interlock], ...]
+    drive: DriveSampling | None
+
+    @property
+    def frequency(self) -> float:
+        """Highest that the drive has; 0 without one. [Hz]"""
+        return 0.0 if self.drive is None else max(self.drive.frequency, self.drive.frequency_maximum)
+
+    def unresolved(self, recorded: Sequence[str], channels: Mapping[str, Channel]) -> str:
+        """Quantities of the drive that record and limits do not show, in one line; empty where they show all."""
+        names = [*recorded, *(lock.channel.name for lock in self.locks)]
+        return "" if self.drive is None else self.drive.caveat_of(names, channels)
+
+
+def run_limits(limits: Limits, devices: Devices, drive: DriveSampling | None) -> RunLimits:
+    """Limits of a run on devices.
+
+    Parameters
+    ----------
+    limits : Limits
+        Of the protocol.
+    devices : Devices
+    drive : DriveSampling or None
+        Of the protocol; None where nothing is driven.
+
+    Returns
+    -------
+    RunLimits
+
+    Raises
+    ------
+    InvalidInput
+        As `interlocks_for`.
+    """
+    locks = interlocks_for(limits, devices.channels, drive)
+    return RunLimits(stated=limits, locks=locks, off=tuple(off_bounds(devices, limits)), drive=drive)
+
+
+def off_bounds(devices: Devices, limits: Limits) -> list[tuple[str, Interlock]]:
+    """Bounds of channels that show whether motor or drive are off, with what is off within them."""
+    channels = devices.channels
+    volts = max(_OFF_SHARE * limits.voltage_maximum, _OFF_VOLTAGE)
+    at_rest = {
+        "voltage": ("drive", volts),
+        "voltage_peak_to_peak": ("drive", 2 * volts),
+        "rotation_speed": ("motor", _STILL_SHARE * devices.motor.rotation_speed_maximum),
+    }
+    return [(what, Interlock(channels[name], most)) for name, (what, most) in at_rest.items() if name in channels]
 
 
 def set_point_trip(setting: DriveSetting, limits: Limits) -> str:

@@ -27,7 +27,7 @@ from sonolube.laboratory.devices import (
     require_rate,
     require_whole,
 )
-from sonolube.laboratory.interlocks import Interlock, first_trip
+from sonolube.laboratory.interlocks import Interlock, RunLimits, first_trip
 from sonolube.laboratory.standing_rig import still_on
 from sonolube.laboratory.states import Event, RunControl, RunEnded
 from sonolube.laboratory.watching import RunWatcher, told
@@ -45,27 +45,19 @@ class OwnClocks:
     Parameters
     ----------
     devices : Devices
-    locks : sequence of Interlock
+    limits : RunLimits
         Of all channels; those of these acquisitions hold from the first sample to the last.
-    off : sequence of (str, Interlock)
-        Bounds of all channels while motor and drive are off, with what is off then.
     watcher : RunWatcher, optional
         Shown every block.
     """
 
-    def __init__(
-        self,
-        devices: Devices,
-        locks: Sequence[Interlock],
-        off: Sequence[tuple[str, Interlock]] = (),
-        watcher: RunWatcher | None = None,
-    ) -> None:
+    def __init__(self, devices: Devices, limits: RunLimits, watcher: RunWatcher | None = None) -> None:
         self._readers = [
             _Reader(
                 clock,
                 device,
-                [lock for lock in locks if lock.channel.name in device.channels],
-                [(what, lock) for what, lock in off if lock.channel.name in device.channels],
+                [lock for lock in limits.locks if lock.channel.name in device.channels],
+                [(what, lock) for what, lock in limits.off if lock.channel.name in device.channels],
                 watcher,
             )
             for clock, device in devices.further.items()

@@ -16,7 +16,7 @@ from typing import Any, Final
 from sonolube.errors import InvalidInput, SeveralFaults
 from sonolube.facts.protocol import Check, Metadata, Protocol, SetPoint, flattened, protocol_text, step_at
 from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting
-from sonolube.laboratory.interlocks import DriveSampling, drive_sampling, interlocks_for, recorded_channels
+from sonolube.laboratory.interlocks import RunLimits, drive_sampling, idle_rate, recorded_channels, run_limits
 from sonolube.laboratory.records import UNRESOLVED, RunRecorder, new_run
 from sonolube.laboratory.supervision import LATE
 from sonolube.operating_system import home_folder, process_start, remove_file
@@ -87,13 +87,47 @@ def speed_checks(protocol: Protocol) -> tuple[str, ...]:
 _ROUNDING: Final = 1 + 1e-9
 
 
-def require_possible(protocol: Protocol, devices: Devices) -> None:
-    """Raise where devices cannot do what a protocol says, before anything is connected.
+@dataclass(frozen=True, kw_only=True)
+class RunPlan:
+    """A protocol on devices: what every part of a run asks of it, worked out once.
+
+    Parameters
+    ----------
+    protocol : Protocol
+    points : tuple of SetPoint
+        In the order of time.
+    limits : RunLimits
+    groove_diameter : float
+        Diameter of the circle under the pin. [m]
+    """
+
+    protocol: Protocol
+    points: tuple[SetPoint, ...]
+    limits: RunLimits
+    groove_diameter: float
+
+    @property
+    def idle_rate(self) -> float:
+        """Sample rate where nothing is recorded. [Hz]"""
+        return idle_rate(self.points)
+
+    @property
+    def first_setting(self) -> DriveSetting | None:
+        """First output of the drive source; None without one."""
+        return next(filter(None, map(drive_setting, self.points)), None)
+
+
+def planned_run(protocol: Protocol, devices: Devices) -> RunPlan:
+    """Plan of a protocol on devices, before anything is connected.
 
     Parameters
     ----------
     protocol : Protocol
     devices : Devices
+
+    Returns
+    -------
+    RunPlan
 
     Raises
     ------
@@ -103,6 +137,12 @@ def require_possible(protocol: Protocol, devices: Devices) -> None:
     faults = impossibilities(protocol, devices)
     if faults:
         raise InvalidInput(faults[0]) if len(faults) == 1 else SeveralFaults(faults)
+    return RunPlan(
+        protocol=protocol,
+        points=tuple(flattened(protocol)),
+        limits=run_limits(protocol.limits, devices, drive_sampling(protocol)),
+        groove_diameter=groove_diameter(protocol, devices),
+    )
 
 
 def impossibilities(protocol: Protocol, devices: Devices) -> tuple[str, ...]:
@@ -121,7 +161,7 @@ def impossibilities(protocol: Protocol, devices: Devices) -> tuple[str, ...]:
     """
     unwatched: tuple[str, ...] = ()
     try:
-        interlocks_for(protocol.limits, devices.channels, drive_sampling(protocol))
+        run_limits(protocol.limits, devices, drive_sampling(protocol))
     except InvalidInput as refusal:
         unwatched = refusal.faults if isinstance(refusal, SeveralFaults) else (str(refusal),)
     diameter, points = groove_diameter(protocol, devices), flattened(protocol)
@@ -191,8 +231,8 @@ _STATED: Final = tuple(name for name in Metadata.model_fields if name not in _EL
 
 
 @dataclass(frozen=True, kw_only=True)
-class RunPlan:
-    """A run to be made, and what its record says of it.
+class RunRequest:
+    """A run that is wanted, and what its record says of it.
 
     Parameters
     ----------
@@ -204,8 +244,6 @@ class RunPlan:
         None for the virtual tribometer.
     seed : int
     tags : sequence of str
-    drive : DriveSampling or None
-        How often the drive is sampled, where the protocol does not tell it.
     facts : mapping of str to str or float
         What is known besides, such as operator, humidity or the date of a calibration; before those of the protocol.
     """
@@ -216,60 +254,55 @@ class RunPlan:
     device_file: Path | None = None
     seed: int = 0
     tags: Sequence[str] = ()
-    drive: DriveSampling | None = None
     facts: Mapping[str, str | float] = field(default_factory=dict)
-
-    def unresolved(self, devices: Devices) -> str:
-        """Quantities of the drive that record and limits do not show, in one line; empty where they show all."""
-        drive = self.drive or drive_sampling(self.protocol)
-        if drive is None:
-            return ""
-        locks = interlocks_for(self.protocol.limits, devices.channels, drive)
-        names = [*recorded_channels(self.protocol), *(lock.channel.name for lock in locks)]
-        return drive.caveat_of(names, devices.channels)
 
 
 def begin_record(
-    plan: RunPlan, devices: Devices, *, out: Path, facts: Mapping[str, str | float] | None = None
+    request: RunRequest,
+    devices: Devices,
+    limits: RunLimits,
+    *,
+    out: Path,
+    facts: Mapping[str, str | float] | None = None,
 ) -> RunRecorder:
-    """Begin the record of a plan below a folder, with its files and what is known of it."""
+    """Begin the record of a run below a folder, with its files and what is known of it."""
     recorder = new_run(
         out,
-        title=plan.protocol.title,
-        protocol=protocol_text(plan.protocol),
-        files=_files(plan),
-        facts=_facts(plan, devices) | dict(facts or {}),
+        title=request.protocol.title,
+        protocol=protocol_text(request.protocol),
+        files=_files(request),
+        facts=_facts(request, devices, limits) | dict(facts or {}),
     )
     if devices.switch_off is not None:
         devices.switch_off.folder = recorder.folder
     return recorder
 
 
-def _files(plan: RunPlan) -> dict[str, str]:
+def _files(request: RunRequest) -> dict[str, str]:
     """Texts of the files that the run was given, by the name under which they are kept."""
-    given = {"rig.toml": None if plan.rig is None else plan.rig.file, "devices.toml": plan.device_file}
+    given = {"rig.toml": None if request.rig is None else request.rig.file, "devices.toml": request.device_file}
     return {name: input_text(path) for name, path in given.items() if path is not None}
 
 
-def _facts(plan: RunPlan, devices: Devices) -> dict[str, str | float | int | bool]:
+def _facts(request: RunRequest, devices: Devices, limits: RunLimits) -> dict[str, str | float | int | bool]:
     """Facts of the run, for its record and the catalogue."""
-    rig, metadata = plan.rig, plan.protocol.metadata
+    rig, metadata = request.rig, request.protocol.metadata
     facts: dict[str, str | float | int | bool] = {
-        "protocol": plan.name,
+        "protocol": request.name,
         "simulated": devices.simulated,
         **{f"device_{name.replace(' ', '_')}": text for name, text in devices.description.items()},
     }
     facts["late_maximum"] = LATE
-    if unresolved := plan.unresolved(devices):
+    if unresolved := limits.unresolved(recorded_channels(request.protocol), devices.channels):
         facts[UNRESOLVED] = unresolved
-    facts["groove_diameter"] = groove_diameter(plan.protocol, devices)
-    facts |= {name: text for name in _STATED if (text := getattr(metadata, name))} | dict(plan.facts)
+    facts["groove_diameter"] = groove_diameter(request.protocol, devices)
+    facts |= {name: text for name in _STATED if (text := getattr(metadata, name))} | dict(request.facts)
     if metadata.normal_load is not None:
         facts["normal_load"] = metadata.normal_load
-    if plan.tags:
-        facts["tags"] = ", ".join(plan.tags)
+    if request.tags:
+        facts["tags"] = ", ".join(request.tags)
     if devices.simulated:
-        facts["seed"] = plan.seed
+        facts["seed"] = request.seed
     if rig is not None:
         facts |= {
             "normal_load": facts.get("normal_load", rig.normal_load),
@@ -279,8 +312,8 @@ def _facts(plan: RunPlan, devices: Devices) -> dict[str, str | float | int | boo
         facts |= {name: value for name in ("pin_material", "disc_material") if (value := getattr(rig, name))}
         if rig.changes:
             facts["changed_entries"] = "; ".join(rig.changes)
-    if plan.device_file is not None:
-        facts["rig"] = plan.device_file.stem
+    if request.device_file is not None:
+        facts["rig"] = request.device_file.stem
     return facts
 
 

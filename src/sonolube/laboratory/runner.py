@@ -6,23 +6,23 @@ from math import pi
 from threading import Event as Signal
 from typing import Final
 
-from sonolube.facts.protocol import Check, Prompt, Protocol, SetPoint, flattened, step_at
+from sonolube.facts.protocol import Check, Prompt, Protocol, SetPoint, step_at
 from sonolube.laboratory.block import BLOCK_DURATION
 from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting, Recorder
-from sonolube.laboratory.interlocks import drive_sampling, idle_rate, interlocks_for, set_point_trip
+from sonolube.laboratory.interlocks import set_point_trip
 from sonolube.laboratory.own_clocks import OwnClocks
 from sonolube.laboratory.run_plan import (
     SETTLING,
     SPEED_CHANNEL,
     SPEEDS,
     CheckedValue,
+    RunPlan,
     drive_setting,
-    groove_diameter,
-    require_possible,
+    planned_run,
     rotation_speed,
     speed_checks,
 )
-from sonolube.laboratory.standing_rig import StandingRig, off_bounds
+from sonolube.laboratory.standing_rig import StandingRig
 from sonolube.laboratory.states import Event, RunControl, RunEnded, RunState
 from sonolube.laboratory.supervised_run import Advance, Sampling, SupervisedRun
 from sonolube.laboratory.watching import RunWatcher, told
@@ -84,9 +84,8 @@ def run_protocol(
     recorded or not: so the limits are watched all the time. Blocks end where a set point changes. While an operator is
     asked, motor and drive are off, and the clock stands.
     """
-    require_possible(protocol, devices)
-    control = control or RunControl()
-    run = _Run(protocol, devices, recorder, operator, control, watcher, self_test=self_test)
+    plan, control = planned_run(protocol, devices), control or RunControl()
+    run = _Run(plan, devices, recorder, operator, control, watcher, self_test=self_test)
     with undone_at_signal(run.halt), asked_by_signal(control.stop):
         return run.complete(advance)
 
@@ -96,7 +95,7 @@ class _Run(SupervisedRun):
 
     def __init__(
         self,
-        protocol: Protocol,
+        plan: RunPlan,
         devices: Devices,
         recorder: Recorder,
         operator: Operator,
@@ -106,21 +105,16 @@ class _Run(SupervisedRun):
         self_test: bool,
     ) -> None:
         super().__init__(devices, recorder, control, watcher, self_test=self_test)
-        self._protocol, self._operator = protocol, operator
-        self._points = flattened(protocol)
-        self._limits = protocol.limits
-        self._frequency = max((point.frequency or 0.0 for point in self._points), default=0.0)
-        self._point = self._points[0]
-        self._diameter = groove_diameter(protocol, devices)
-        locks = interlocks_for(protocol.limits, devices.channels, drive_sampling(protocol))
-        rate = idle_rate(self._points)
-        self._standing = StandingRig(self._devices, locks, protocol.limits, sample_rate=rate, watcher=watcher)
-        measured = [SPEED_CHANNEL] if speed_checks(protocol) else []
-        self._clocks = OwnClocks(devices, locks, off_bounds(devices, protocol.limits), watcher)
+        self._plan, self._protocol, self._operator = plan, plan.protocol, operator
+        self._points, self._point, self._diameter = plan.points, plan.points[0], plan.groove_diameter
+        self._limits = limits = plan.limits
+        self._standing = StandingRig(self._devices, limits, sample_rate=plan.idle_rate, watcher=watcher)
+        measured = [SPEED_CHANNEL] if speed_checks(plan.protocol) else []
+        self._clocks = OwnClocks(devices, limits, watcher)
         self._sampling = Sampling(
-            self._devices.acquisition, recorder, locks, beside=self._clocks, also=measured, watcher=watcher
+            self._devices.acquisition, recorder, limits.locks, beside=self._clocks, also=measured, watcher=watcher
         )
-        told(watcher, lambda each: each.begins(devices.channels, locks))
+        told(watcher, lambda each: each.begins(devices.channels, limits.locks))
         self._drive: DriveSetting | None = None
         self._turns = 0.0
         self._conditions: dict[str, float | str] = {"lubricant": ""}
@@ -132,7 +126,7 @@ class _Run(SupervisedRun):
 
     def _follow(self, advance: Advance | None) -> None:
         """Reach one set point after the other."""
-        self._test_itself(next(filter(None, map(drive_setting, self._points)), None))
+        self._test_itself(self._plan.first_setting)
         for point, following in pairwise(self._points):
             self._reach(point)
             self._run_until(following.time, advance)
@@ -189,7 +183,7 @@ class _Run(SupervisedRun):
             assert point.sample_rate is not None
             self._sampling.record(point.channels, sample_rate=point.sample_rate)
         else:
-            self._sampling.start(point.channels, sample_rate=point.sample_rate or idle_rate(self._points))
+            self._sampling.start(point.channels, sample_rate=point.sample_rate or self._plan.idle_rate)
 
     @property
     def _records_now(self) -> bool:
@@ -210,7 +204,7 @@ class _Run(SupervisedRun):
             if setting is None:
                 self._devices.drive.off()
             else:
-                self._end_at(set_point_trip(setting, self._protocol.limits))
+                self._end_at(set_point_trip(setting, self._limits.stated))
                 self._devices.drive.drive(setting)
             self._drive = setting
             self._sampling.expect(setting if self._tests_itself else None)

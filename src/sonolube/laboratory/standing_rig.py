@@ -7,18 +7,14 @@ from threading import Event as Signal, Thread
 from typing import Final
 
 from sonolube.errors import SonolubeError
-from sonolube.facts.protocol import Limits
 from sonolube.laboratory.block import BLOCK_DURATION, Block
 from sonolube.laboratory.devices import Acquisition, Devices
-from sonolube.laboratory.interlocks import IDLE_RATE, SAMPLES_PER_PERIOD, WAVES, Interlock, first_trip
+from sonolube.laboratory.interlocks import IDLE_RATE, SAMPLES_PER_PERIOD, WAVES, Interlock, RunLimits, first_trip
 from sonolube.laboratory.states import Event, RunControl, RunEnded, ending
 from sonolube.laboratory.watching import RunWatcher, told
 from sonolube.text.units import format_si
 
 _VIRTUAL: Final = 2.0  # s, of the time of virtual devices
-_OFF_SHARE: Final = 0.05  # of the limit of the voltage, below which the drive counts as off
-_OFF_VOLTAGE: Final = 1.0  # V, at least, for the offsets of monitors
-_STILL_SHARE: Final = 0.01  # of the speed of the motor, below which the disc counts as at rest
 SETTLING: Final = {"drive": 1.0, "motor": 10.0}
 """Time in which amplifier and disc come to rest. [s]"""
 
@@ -30,9 +26,8 @@ class StandingRig:
     ----------
     devices : Devices
         Virtual ones, whose time does not go on by itself, are watched for two seconds.
-    locks : sequence of Interlock
-        Of the protocol; those of the temperature hold here too.
-    limits : Limits
+    limits : RunLimits
+        Of the run; those of the temperature hold here too.
     sample_rate : float
         Highest that the protocol uses. [Hz]
     watcher : RunWatcher, optional
@@ -40,19 +35,15 @@ class StandingRig:
     """
 
     def __init__(
-        self,
-        devices: Devices,
-        locks: Sequence[Interlock],
-        limits: Limits,
-        *,
-        sample_rate: float,
-        watcher: RunWatcher | None = None,
+        self, devices: Devices, limits: RunLimits, *, sample_rate: float, watcher: RunWatcher | None = None
     ) -> None:
         self._watcher = watcher
         self._acquisition = devices.acquisition
         channels, self._lasts = devices.acquisition.channels, inf if devices.clock is None else _VIRTUAL
-        self._off = [(what, lock) for what, lock in off_bounds(devices, limits) if lock.channel.name in channels]
-        self._always = [lock for lock in locks if lock.channel.is_watched_at_rest and lock.channel.name in channels]
+        self._off = [(what, lock) for what, lock in limits.off if lock.channel.name in channels]
+        self._always = [
+            lock for lock in limits.locks if lock.channel.is_watched_at_rest and lock.channel.name in channels
+        ]
         self._names = [lock.channel.name for lock in (*self._always, *(lock for _, lock in self._off))]
         self._wanted_rate, self._rate, self._time = min(sample_rate, IDLE_RATE), 0.0, 0.0
         self._failure: BaseException | None = None
@@ -95,27 +86,14 @@ class StandingRig:
         return first_trip(block, self._names, self._always) or still_on(block, self._names, self._off, self._time)
 
 
-def off_bounds(devices: Devices, limits: Limits) -> list[tuple[str, Interlock]]:
-    """Bounds of channels that show whether motor or drive are off, with what is off within them."""
-    channels = devices.channels
-    volts = max(_OFF_SHARE * limits.voltage_maximum, _OFF_VOLTAGE)
-    at_rest = {
-        "voltage": ("drive", volts),
-        "voltage_peak_to_peak": ("drive", 2 * volts),
-        "rotation_speed": ("motor", _STILL_SHARE * devices.motor.rotation_speed_maximum),
-    }
-    return [(what, Interlock(channels[name], most)) for name, (what, most) in at_rest.items() if name in channels]
-
-
-def measured_outputs(devices: Devices, limits: Limits, *, frequency: float) -> dict[str, str]:
+def measured_outputs(devices: Devices, limits: RunLimits) -> dict[str, str]:
     """Outputs that channels of the acquisition show after they were switched off.
 
     Parameters
     ----------
     devices : Devices
-    limits : Limits
-    frequency : float
-        Highest that the drive had; samples of its voltage show it from five a period on. [Hz]
+    limits : RunLimits
+        Samples of the voltage of its drive show it from five a period of the highest frequency on.
 
     Returns
     -------
@@ -123,8 +101,8 @@ def measured_outputs(devices: Devices, limits: Limits, *, frequency: float) -> d
         By output, empty where it is off, else why it counts as on; outputs that no channel shows are left out.
     """
     channels = devices.acquisition.channels
-    shown = [(what, lock) for what, lock in off_bounds(devices, limits) if lock.channel.name in channels]
-    fast = max(IDLE_RATE, SAMPLES_PER_PERIOD * frequency)
+    shown = [(what, lock) for what, lock in limits.off if lock.channel.name in channels]
+    fast = max(IDLE_RATE, SAMPLES_PER_PERIOD * limits.frequency)
     slowly = [(what, lock) for what, lock in shown if lock.channel.name not in WAVES]
     found = _seen(devices.acquisition, shown, rate=fast)
     return found if found or len(slowly) == len(shown) else _seen(devices.acquisition, slowly, rate=IDLE_RATE)

@@ -12,7 +12,6 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import SonolubeError
-from sonolube.facts.protocol import Limits
 from sonolube.laboratory.block import BLOCK_DURATION, Block
 from sonolube.laboratory.devices import (
     Acquisition,
@@ -23,7 +22,7 @@ from sonolube.laboratory.devices import (
     require_gapless,
     switch_outputs_off,
 )
-from sonolube.laboratory.interlocks import IDLE_RATE, SAMPLES_PER_PERIOD, Interlock, first_trip
+from sonolube.laboratory.interlocks import IDLE_RATE, SAMPLES_PER_PERIOD, Interlock, RunLimits, first_trip
 from sonolube.laboratory.own_clocks import OwnClocks
 from sonolube.laboratory.run_plan import reserved
 from sonolube.laboratory.set_and_measured import (
@@ -244,8 +243,7 @@ class SupervisedRun(ABC):
 
     _clocks: OwnClocks
     _sampling: Sampling
-    _limits: Limits
-    _frequency: float  # highest of the drive, in Hz; 0 without one
+    _limits: RunLimits
 
     def __init__(
         self,
@@ -362,7 +360,7 @@ class SupervisedRun(ABC):
     def _verdict(self) -> Verdict:
         """Switch motor and drive off, and say what is known of them then."""
         failures = [*self._switch_off(), *self._supervisor.settle()]
-        measured = {} if failures else measured_outputs(self._devices, self._limits, frequency=self._frequency)
+        measured = {} if failures else measured_outputs(self._devices, self._limits)
         return verdict_on(failures, measured)
 
     def _close(self) -> None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 from tests.laboratory.scpi_generator import Generator, LineServer
 from tests.laboratory.serial_motor import Controller, SerialPort
@@ -28,7 +29,7 @@ def pretended_instruments() -> Iterator[PretendedInstruments]:
     """A generator on a socket and a motor on a pseudo-terminal, in a process that no fault reaches."""
     generator, controller = Generator(), Controller()
     server, port = LineServer(generator.answer), SerialPort(controller)
-    sections = {
+    sections: dict[str, dict[str, Any]] = {
         "drive": {"resource": server.resource, "amplifier_gain": 20.0},
         "motor": {"resource": port.resource, **_MOTOR},
     }

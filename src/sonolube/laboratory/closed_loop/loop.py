@@ -12,7 +12,7 @@ from sonolube.design.control import initial_state, next_level
 from sonolube.errors import InvalidInput
 from sonolube.laboratory.closed_loop.plan import FrictionHold, HeldFriction, recorded_channels
 from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting, Recorder
-from sonolube.laboratory.interlocks import interlocks_for, set_point_trip
+from sonolube.laboratory.interlocks import run_limits, set_point_trip
 from sonolube.laboratory.own_clocks import OwnClocks
 from sonolube.laboratory.states import Event, RunControl, RunEnded
 from sonolube.laboratory.supervised_run import Advance, Sampling, SupervisedRun
@@ -82,11 +82,10 @@ class _Loop(SupervisedRun):
         self, hold: FrictionHold, devices: Devices, recorder: Recorder | None, control: RunControl, *, self_test: bool
     ) -> None:
         super().__init__(devices, recorder, control, self_test=self_test)
-        self._hold, self._limits, self._frequency = hold, hold.limits, hold.frequency
+        self._hold, self._limits = hold, run_limits(hold.limits, devices, hold.drive_sampling)
         channels = devices.acquisition.channels
-        locks = interlocks_for(hold.limits, devices.channels, hold.drive_sampling)
-        self._clocks = OwnClocks(devices, locks)
-        self._sampling = Sampling(self._devices.acquisition, recorder, locks, beside=self._clocks)
+        self._clocks = OwnClocks(devices, self._limits)
+        self._sampling = Sampling(self._devices.acquisition, recorder, self._limits.locks, beside=self._clocks)
         self._names = recorded_channels(hold, channels)
         self._interval = nan  # of the controller by the clock of the acquisition, in s
         self._rows: list[tuple[float, float, float, float]] = []
@@ -164,7 +163,7 @@ class _Loop(SupervisedRun):
         if setting is None:
             self._devices.drive.off()
             return
-        self._end_at(set_point_trip(setting, self._hold.limits))
+        self._end_at(set_point_trip(setting, self._limits.stated))
         self._devices.drive.drive(setting)
         if not self._was_read_back:
             self._was_read_back = True
@@ -213,7 +212,7 @@ def require_holdable(hold: FrictionHold, devices: Devices) -> None:
     InvalidInput
         Naming what is asked for, and the device or limit that forbids it.
     """
-    interlocks_for(hold.limits, devices.channels, hold.drive_sampling)
+    run_limits(hold.limits, devices, hold.drive_sampling)
     if _FRICTION not in devices.acquisition.channels:
         raise InvalidInput(f"{devices.acquisition.name} has no channel {_FRICTION}, which the loop needs")
     reached = format_si(hold.voltage_maximum, "V")

@@ -7,8 +7,9 @@ from typing import Annotated, Any, Unpack
 from sonolube.design.control import Amplifier, ControlDesign, ControlSettings, design_control
 from sonolube.errors import InvalidInput
 from sonolube.laboratory import RunControl, closed_loop, closed_loop as holds, exit_code
+from sonolube.laboratory.interlocks import run_limits
 from sonolube.laboratory.records import Run, read_run
-from sonolube.laboratory.run_plan import RunPlan, begin_record, require_free
+from sonolube.laboratory.run_plan import RunRequest, begin_record, require_free
 from sonolube.laboratory.switch_off import ready_devices
 from sonolube.laboratory.virtual_tribometer import virtual_tribometer
 from sonolube.models.actuator.drive import Drive
@@ -177,18 +178,20 @@ def hold(
     virtual = virtual_tribometer(known, seed=seed, real_time=real_time) if file is None else None
     devices = ready_devices(Path(device_map)) if virtual is None else virtual.devices
     holds.require_holdable(wanted, devices)
-    plan = RunPlan(
+    wanted_run = RunRequest(
         protocol=holds.hold_protocol(wanted, devices.acquisition.channels),
         name="hold",
         rig=known,
         device_file=file,
         seed=seed,
         tags=tag,
-        drive=wanted.drive_sampling,
     )
     require_free(devices.resources)
-    facts = {"reference_friction_force": wanted.friction_force, **({"self_test": "left out"} if no_self_test else {})}
-    recorder = begin_record(plan, devices, out=Path(out), facts=facts)
+    facts: dict[str, str | float] = {"reference_friction_force": wanted.friction_force}
+    if no_self_test:
+        facts["self_test"] = "left out"
+    held_to = run_limits(wanted.limits, devices, wanted.drive_sampling)
+    recorder = begin_record(wanted_run, devices, held_to, out=Path(out), facts=facts)
     requests = control or RunControl()
     with run_stage("holding", requests) as advance:
         held = holds.hold_friction(

@@ -12,11 +12,11 @@ from typing import Annotated, Any, Final, Literal, Unpack
 import sonolube.laboratory.dry_run as dry_runs
 from sonolube.errors import InvalidInput
 from sonolube.facts.protocol import Protocol, flattened, protocol_at, protocol_by_name_or_file
-from sonolube.laboratory import RunControl, RunState, RunWatcher, exit_code, require_possible, run_protocol
+from sonolube.laboratory import RunControl, RunState, RunWatcher, exit_code, run_protocol
 from sonolube.laboratory.devices import Devices
 from sonolube.laboratory.dry_run import DryRun, dry_run_chart
 from sonolube.laboratory.records import Run, export_run, read_run
-from sonolube.laboratory.run_plan import RunPlan, begin_record, require_free
+from sonolube.laboratory.run_plan import RunRequest, begin_record, planned_run, require_free
 from sonolube.laboratory.runner import Operator
 from sonolube.laboratory.switch_off import ready_devices
 from sonolube.laboratory.virtual_tribometer import GROOVE_DIAMETER, Disturbances, VirtualTribometer, virtual_tribometer
@@ -148,7 +148,7 @@ def device_file(device_map: str | Path) -> Path | None:
 
 
 def run_and_record(
-    plan: RunPlan,
+    request: RunRequest,
     devices: Devices,
     *,
     out: Path,
@@ -159,11 +159,11 @@ def run_and_record(
     asks: bool = False,
     self_test: bool = True,
 ) -> RunAnswer:
-    """Run a plan on devices with its record below a folder, and say how it went.
+    """Run a protocol on devices with its record below a folder, and say how it went.
 
     Parameters
     ----------
-    plan : RunPlan
+    request : RunRequest
     devices : Devices
     out : Path
         Folder of all runs.
@@ -189,15 +189,15 @@ def run_and_record(
     InvalidInput
         If the devices cannot do what the protocol says, nobody can answer its prompts, or another run has one of them.
     """
-    require_possible(plan.protocol, devices)
-    answers = operator if asks and operator is not None else _answering(plan.protocol, devices, operator)
+    protocol, limits = request.protocol, planned_run(request.protocol, devices).limits
+    answers = operator if asks and operator is not None else _answering(protocol, devices, operator)
     control = control or RunControl()
     require_free(devices.resources)
-    recorder = begin_record(plan, devices, out=out, facts={} if self_test else {"self_test": "left out"})
+    recorder = begin_record(request, devices, limits, out=out, facts={} if self_test else {"self_test": "left out"})
     told(watcher, lambda each: each.records(recorder.folder))
     with run_stage("running", control) as advance:
         result = run_protocol(
-            plan.protocol,
+            protocol,
             devices,
             recorder,
             operator=answers,
@@ -208,7 +208,7 @@ def run_and_record(
         )
         if virtual is not None:
             recorder.store_truth(virtual.truth())
-    return RunAnswer(result=result, run=read_run(recorder.folder), simulated=devices.simulated, rig=plan.rig)
+    return RunAnswer(result=result, run=read_run(recorder.folder), simulated=devices.simulated, rig=request.rig)
 
 
 @contextmanager
@@ -283,10 +283,12 @@ def run(
     if file is None:
         refuse_unused("no_self_test", because=f"with {shown('device_map')} virtual, which is not tested so")
     facts = facts_of(fact or {})
-    plan = RunPlan(protocol=read, name=Path(path).stem, rig=known, device_file=file, seed=seed, tags=tag, facts=facts)
-    simulated = _virtual_rig(plan, real_time=real_time) if file is None else None
+    wanted = RunRequest(
+        protocol=read, name=Path(path).stem, rig=known, device_file=file, seed=seed, tags=tag, facts=facts
+    )
+    simulated = _virtual_rig(wanted, real_time=real_time) if file is None else None
     return run_and_record(
-        plan,
+        wanted,
         ready_devices(Path(device_map)) if simulated is None else simulated.devices,
         out=Path(out),
         virtual=simulated,
@@ -322,9 +324,9 @@ def virtual(
     read = protocol_by_name_or_file(path)
     if protocol is None:
         read = protocol_at(read, normal_load=known.normal_load, sliding_speed=known.sliding_speed)
-    plan = RunPlan(protocol=read, name=Path(path).stem, rig=known, seed=seed)
-    simulated = _virtual_rig(plan)
-    found = run_and_record(plan, simulated.devices, out=Path(out), virtual=simulated)
+    wanted = RunRequest(protocol=read, name=Path(path).stem, rig=known, seed=seed)
+    simulated = _virtual_rig(wanted)
+    found = run_and_record(wanted, simulated.devices, out=Path(out), virtual=simulated)
     if file_format != "netcdf":
         export_run(found.run.folder, file_format=file_format, out=found.run.folder)
     return found
@@ -338,18 +340,18 @@ def _require_possible_dry(protocol: Protocol, rig: Rig | None) -> None:
         raise InvalidInput(f"impossible by a dry run: {refusals[0]}{more}; {shown('anyway')} runs it all the same")
 
 
-def _virtual_rig(plan: RunPlan, *, real_time: bool = False) -> VirtualTribometer:
-    """Virtual tribometer of a plan's rig.
+def _virtual_rig(wanted: RunRequest, *, real_time: bool = False) -> VirtualTribometer:
+    """Virtual tribometer of the rig of a run.
 
     Raises
     ------
     InvalidInput
-        If the plan names no rig.
+        If the run names no rig.
     """
-    if plan.rig is None:
+    if wanted.rig is None:
         raise InvalidInput(f"{shown('device_map')} virtual needs {shown('rig')}, whose friction it takes")
-    metadata = plan.protocol.metadata
-    rig = plan.rig if metadata.normal_load is None else replace(plan.rig, normal_load=metadata.normal_load)
+    metadata = wanted.protocol.metadata
+    rig = wanted.rig if metadata.normal_load is None else replace(wanted.rig, normal_load=metadata.normal_load)
     diameter = metadata.groove_diameter or GROOVE_DIAMETER
     sizes = Disturbances(contact_share=float(metadata.thermocouple == "contact"))
-    return virtual_tribometer(rig, seed=plan.seed, real_time=real_time, disturbances=sizes, groove_diameter=diameter)
+    return virtual_tribometer(rig, seed=wanted.seed, real_time=real_time, disturbances=sizes, groove_diameter=diameter)
