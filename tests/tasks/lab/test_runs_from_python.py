@@ -179,6 +179,7 @@ def test_a_cancelled_hold_is_stopped_in_order(folder: Path, tmp_path: Path) -> N
                 run_in=0.1,
                 rate=50,
                 delay=0,
+                no_self_test=True,  # the inputs here follow no drive
                 out=folder,
                 cancelled=cancelled_at(8),
             )

@@ -252,7 +252,7 @@ class TriedFault:
     output, error : str
         What it wrote.
     seconds_to_off : float or None
-        From the fault until the last output was off, where it was on; None where it was not, or is still on. [s]
+        From the fault until the last output was off, in s; None where none was on, or one still is.
     """
 
     fault: Fault
