@@ -3,6 +3,7 @@ from .block import (
     CHANNEL_QUANTITIES as CHANNEL_QUANTITIES,
     Block as Block,
     Channel as Channel,
+    Sensor as Sensor,
 )
 from .devices import (
     Acquisition as Acquisition,

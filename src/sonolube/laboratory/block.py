@@ -34,6 +34,28 @@ BLOCK_DURATION: Final = 0.05
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class Sensor:
+    """Sensor of a channel, as the device map states it; empty where it does not.
+
+    Parameters
+    ----------
+    identifier : str
+        Serial number of sensor or amplifier.
+    calibration : str
+        Gain and offset, or points.
+    calibrated : str
+        Date of the calibration, such as 2026-03-01.
+    uncertainty : float or None
+        Standard uncertainty of a reading, in SI.
+    """
+
+    identifier: str = ""
+    calibration: str = ""
+    calibrated: str = ""
+    uncertainty: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Channel:
     """Channel of an acquisition.
 
@@ -51,6 +73,7 @@ class Channel:
         Greatest magnitude that the rig stands, in SI, beyond which every run ends.
     sample_rate : float or None
         That of an acquisition with a clock of its own; None where the protocol tells it. [Hz]
+    sensor : Sensor
     """
 
     name: str
@@ -60,6 +83,7 @@ class Channel:
     free_unit: str = ""
     limit: float = np.inf
     sample_rate: float | None = None
+    sensor: Sensor = Sensor()
 
     @property
     def unit(self) -> str:

@@ -22,7 +22,7 @@ def run(notes: list[Any], *, reason: str = "limit", channels: bool = True) -> An
              "u": SimpleNamespace(name="u", described="u [V]", quantity="voltage", unit="V")}  # fmt: skip
     return SimpleNamespace(
         summary=SimpleNamespace(
-            folder=FOLDER, title="Brass", begun=1000.0, begun_text="2026-07-15 10:00", outcome="stopped",
+            folder=FOLDER, title="Brass", begun=1000.0, begun_text="2026-07-15T10:00:00Z", outcome="stopped",
             reason=reason, samples=50, duration=2.5, gaps=3, channels=("f", "u"),
         ),
         known=SimpleNamespace(
@@ -37,7 +37,7 @@ def run(notes: list[Any], *, reason: str = "limit", channels: bool = True) -> An
 
 def test_a_run_in_rows_has_outcome_channels_clocks_facts_versions_and_fingerprints() -> None:
     assert results.run_rows(run([])) == [
-        ("begun", "2026-07-15 10:00 UTC"),
+        ("begun", "2026-07-15T10:00:00Z"),
         ("outcome", "stopped: limit"),
         ("channels", "f [N], u [V]"),
         ("clock slow", "a.nc, b.nc"),
@@ -65,7 +65,7 @@ def test_a_run_in_json_has_facts_fingerprints_channels_and_every_event() -> None
     assert results.run_object(run([note(1, reason="hot")])) == {
         "folder": str(FOLDER),
         "title": "Brass",
-        "begun": "2026-07-15 10:00",
+        "begun": "2026-07-15T10:00:00Z",
         "outcome": "stopped",
         "reason": "limit",
         "channels": ["f", "u"],
@@ -88,7 +88,7 @@ class Summary:
     outcome: str = "completed"
     duration: float = 90.0
     samples: int = 9
-    begun_text: str = "2026-07-15 10:00"
+    begun_text: str = "2026-07-15T10:00:00Z"
 
 
 @dataclass
@@ -119,7 +119,7 @@ def test_a_run_that_was_found_in_json_has_no_text_that_is_searched() -> None:
     found = results.found_object(FULL)
     assert "text" not in found
     assert "summary" not in found
-    assert (found["folder"], found["begun"], found["outcome"]) == (str(FOLDER), "2026-07-15 10:00", "completed")
+    assert (found["folder"], found["begun"], found["outcome"]) == (str(FOLDER), "2026-07-15T10:00:00Z", "completed")
     assert (found["normal_load"], found["sliding_speed"]) == (None, 0.02)
     assert found["normal_loads"] == (3.0, 5.0, 7.0)
 

@@ -136,6 +136,12 @@ class Metadata(Table):
         Date of the latest calibration of the sensors, such as 2026-03-01.
     thermocouple : str
         Where the channel of the temperature measures: actuator or contact; empty where that is not said.
+    creator : str
+        Whose data the recordings are; the operator by default.
+    institution : str
+        Where the test is made.
+    licence : str
+        Under which others may use the recordings, such as CC-BY-4.0.
     run : int or None
         Row of the table of runs.
     block : int or None
@@ -151,6 +157,9 @@ class Metadata(Table):
     humidity: str = Field(default="", max_length=_TEXT)
     calibrated: str = Field(default="", max_length=_TEXT)
     thermocouple: Literal["", "actuator", "contact"] = ""
+    creator: str = Field(default="", max_length=_TEXT)
+    institution: str = Field(default="", max_length=_TEXT)
+    licence: str = Field(default="", max_length=_TEXT)
     run: int | None = Field(default=None, ge=1)
     block: int | None = Field(default=None, ge=1)
 

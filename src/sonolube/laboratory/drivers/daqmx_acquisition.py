@@ -22,6 +22,7 @@ from sonolube.vocabulary import unit_of
 Floats = NDArray[np.float64]
 
 _MAX_POINTS = 10_000
+_MAX_SHOWN_POINTS = 100
 
 
 SensorScale = Callable[[Floats], Floats]
@@ -71,7 +72,7 @@ class AnalogueInputEntry(ChannelEntry):
     Parameters
     ----------
     name : str
-    quantity, unit, limit : str or None
+    quantity, unit, limit, identifier, calibrated, uncertainty : str or None
         As those of every channel.
     input : str
         Such as ai0.
@@ -110,10 +111,18 @@ class AnalogueInputEntry(ChannelEntry):
             return lambda voltages: gain * voltages + offset
         return tabulated_scale(files[self.calibration], quantity=self.kind, unit=self.si_unit)
 
-    def ranged(self, scale: SensorScale, *, sample_rate: float | None) -> Channel:
-        """Channel with the range of sensor and input."""
+    def calibration_text(self, files: Mapping[str, str]) -> str:
+        """Gain and offset, or the points of the calibration, of which long ones are kept as their number."""
+        if self.calibration is None:
+            return f"gain {self.gain}" + ("" if self.offset is None else f", offset {self.offset}")
+        _, *points = filter(str.strip, files[self.calibration].splitlines())
+        shown = "; ".join(points) if len(points) <= _MAX_SHOWN_POINTS else f"{len(points)} points"
+        return f"{self.calibration}, voltage and reading: {shown}"
+
+    def ranged(self, scale: SensorScale, *, sample_rate: float | None, calibration: str = "") -> Channel:
+        """Channel with the range of sensor and input, and its calibration in words."""
         lowest, highest = sorted(scale(np.array([-self.input_range, self.input_range])).tolist())
-        return self.channel(lowest=lowest, highest=highest, sample_rate=sample_rate)
+        return self.channel(lowest=lowest, highest=highest, sample_rate=sample_rate, calibration=calibration)
 
 
 class DaqmxAcquisitionEntry(AcquisitionEntry):
@@ -216,7 +225,10 @@ class DaqmxAcquisition:
         self._inputs = {each.name: each for each in entry.channels}
         self._scale_of = {each.name: each.scale(files) for each in entry.channels}
         self.channels: Mapping[str, Channel] = {
-            each.name: each.ranged(self._scale_of[each.name], sample_rate=entry.sample_rate) for each in entry.channels
+            each.name: each.ranged(
+                self._scale_of[each.name], sample_rate=entry.sample_rate, calibration=each.calibration_text(files)
+            )
+            for each in entry.channels
         }
         self._library: Any = None
         self._task: Any = None

@@ -3,14 +3,15 @@
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from datetime import date
 from math import inf
-from typing import Annotated, ClassVar, Final, Literal, Self
+from typing import Annotated, Any, ClassVar, Final, Literal, Self
 
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.facts.protocol.quantity_text import SiText, Table
-from sonolube.laboratory.block import CHANNEL_QUANTITIES, Channel, quantity_of
+from sonolube.laboratory.block import CHANNEL_QUANTITIES, Channel, Sensor, quantity_of
 from sonolube.laboratory.devices import (
     WAVEFORMS,
     Acquisition,
@@ -20,7 +21,7 @@ from sonolube.laboratory.devices import (
     Motor,
     OutputGuard,
 )
-from sonolube.text.units import format_si, require_si_unit, to_si
+from sonolube.text.units import format_si, require_si_unit, temperature_difference_to_si, to_si
 from sonolube.vocabulary import quantities, unit_of
 
 _ROUNDING: Final = 1 + 1e-9
@@ -151,12 +152,21 @@ class ChannelEntry(Table):
         SI unit of a free quantity, such as m/s2; empty for pure numbers.
     limit : str or None
         Greatest magnitude that the rig stands, beyond which every run ends, such as 120 degC.
+    identifier : str
+        Serial number of the sensor, which the recording keeps as the following ones.
+    calibrated : str
+        Date of its latest calibration, such as 2026-03-01.
+    uncertainty : str or None
+        Standard uncertainty of a reading, such as 0.05 N.
     """
 
     quantity: Name | None = None
     name: Name  # behind the quantity, on which it depends
     unit: Annotated[str, Field(max_length=40)] | None = None
     limit: Annotated[str, Field(max_length=80)] | None = None
+    identifier: Text = ""
+    calibrated: str = ""
+    uncertainty: Annotated[str, Field(max_length=80)] | None = None
 
     @field_validator("name")
     @classmethod
@@ -173,6 +183,14 @@ class ChannelEntry(Table):
             raise ValueError(f"{name} is another quantity of the vocabulary than {quantity}; choose another name")
         return name
 
+    @field_validator("calibrated", mode="before")
+    @classmethod
+    def _require_date(cls, calibrated: Any) -> str:
+        try:
+            return date.fromisoformat(str(calibrated)).isoformat()
+        except ValueError:
+            raise ValueError(f"calibrated must be a date such as 2026-03-01, got {str(calibrated)[:80]!r}") from None
+
     @model_validator(mode="after")
     def _require_unit(self) -> Self:
         if self.kind in quantities():
@@ -183,6 +201,8 @@ class ChannelEntry(Table):
         require_si_unit(self.si_unit, name="unit")
         if self.limit is not None and not self.limit_value > 0:
             raise ValueError("limit must be positive")
+        if self.uncertainty is not None and not (self.uncertainty_value or 0.0) > 0:
+            raise ValueError(f"uncertainty must be positive, got {self.uncertainty}")
         return self
 
     @property
@@ -200,7 +220,18 @@ class ChannelEntry(Table):
         """Greatest magnitude in SI; infinite without one."""
         return inf if self.limit is None else to_si(self.limit, unit=self.si_unit, name="limit")
 
-    def channel(self, *, lowest: float = -inf, highest: float = inf, sample_rate: float | None = None) -> Channel:
+    @property
+    def uncertainty_value(self) -> float | None:
+        """Standard uncertainty of a reading in SI; None without one."""
+        if self.uncertainty is None:
+            return None
+        if self.si_unit == "K":
+            return temperature_difference_to_si(self.uncertainty, name="uncertainty")
+        return to_si(self.uncertainty, unit=self.si_unit, name="uncertainty")
+
+    def channel(
+        self, *, lowest: float = -inf, highest: float = inf, sample_rate: float | None = None, calibration: str = ""
+    ) -> Channel:
         """Channel with the range of sensor and input, in SI.
 
         Parameters
@@ -208,6 +239,8 @@ class ChannelEntry(Table):
         lowest, highest : float
         sample_rate : float or None
             Of an acquisition with a clock of its own. [Hz]
+        calibration : str
+            Gain and offset, or points.
 
         Returns
         -------
@@ -221,6 +254,12 @@ class ChannelEntry(Table):
             free_unit=self.unit or "",
             limit=self.limit_value,
             sample_rate=sample_rate,
+            sensor=Sensor(
+                identifier=self.identifier,
+                calibration=calibration,
+                calibrated=self.calibrated,
+                uncertainty=self.uncertainty_value,
+            ),
         )
 
 

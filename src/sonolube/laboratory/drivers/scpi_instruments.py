@@ -207,7 +207,7 @@ class QueriedChannelEntry(ReplyEntry, ChannelEntry):
     Parameters
     ----------
     name : str
-    quantity, unit, limit : str or None
+    quantity, unit, limit, identifier, calibrated, uncertainty : str or None
         As those of every channel.
     query : str
         Channels with the same query share one answer.

@@ -74,13 +74,18 @@ class DocumentLog:
     folder : Path
     earlier : ReadDocuments, optional
         Of the file that is continued; a new one is made without it.
+
+    Attributes
+    ----------
+    run : str
+        UUID of the run.
     """
 
     def __init__(self, folder: Path, *, earlier: ReadDocuments | None = None) -> None:
         self._folder = folder
         self._file = AppendedFile(folder / DOCUMENTS, keep=None if earlier is None else earlier.whole_bytes)
         starts = [] if earlier is None else earlier.of("start")
-        self._run = str(starts[0]["uid"]) if starts else str(uuid4())
+        self.run = str(starts[0]["uid"]) if starts else str(uuid4())
         descriptors = {} if earlier is None else {str(each.get("name")): each for each in earlier.of("descriptor")}
         self._notes = str(descriptors[_NOTES]["uid"]) if _NOTES in descriptors else str(uuid4())
         self._has_notes = _NOTES in descriptors
@@ -90,7 +95,7 @@ class DocumentLog:
         """Write the first document: facts, versions and files of the run."""
         self._write(
             "start",
-            uid=self._run,
+            uid=self.run,
             time=known.begun,
             title=known.title,
             facts={_key(name): value for name, value in known.facts.items()},
@@ -150,7 +155,7 @@ class DocumentLog:
         self._write(
             "stop",
             uid=str(uuid4()),
-            run_start=self._run,
+            run_start=self.run,
             time=time,
             exit_status=EXIT_STATUS[outcome],
             outcome=outcome,
@@ -170,7 +175,7 @@ class DocumentLog:
         self._write(
             "stream_resource",
             uid=uid,
-            run_start=self._run,
+            run_start=self.run,
             data_key=channel,
             mimetype=_MIME,
             uri=f"file://localhost{path.resolve().as_posix()}",
@@ -190,7 +195,7 @@ class DocumentLog:
 
     def _describe(self, name: str, uid: str, time: float, keys: Mapping[str, Mapping[str, Any]]) -> None:
         """Write the description of a stream."""
-        self._write("descriptor", uid=uid, run_start=self._run, time=time, name=name, data_keys=keys)
+        self._write("descriptor", uid=uid, run_start=self.run, time=time, name=name, data_keys=keys)
 
     def _write(self, kind: str, /, **entries: Any) -> None:
         """Append a document as one line."""

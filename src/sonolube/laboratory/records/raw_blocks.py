@@ -1,10 +1,10 @@
 """Raw blocks of a recording: a file to which blocks are appended as they come, with counters and checksums.
 
 The header is the mark ``SNLBLK1`` with a line feed, the length of a text (4 bytes), that text (JSON: sample rate,
-channels with quantity, unit and range, time of the begin, and the clock where it is not that of the run), and its
-CRC-32 (4 bytes). Each record is the mark ``BLK`` behind the byte b5, sequence number and first sample (8 bytes each),
-number of samples (4 bytes), CRC-32 of the samples and CRC-32 of all before it (4 bytes each), then the samples, channel
-beside channel, as 64-bit floats. All numbers are little-endian.
+channels with quantity, unit, range and sensor, time of the begin, and the clock where it is not that of the run), and
+its CRC-32 (4 bytes). Each record is the mark ``BLK`` behind the byte b5, sequence number and first sample (8 bytes
+each), number of samples (4 bytes), CRC-32 of the samples and CRC-32 of all before it (4 bytes each), then the samples,
+channel beside channel, as 64-bit floats. All numbers are little-endian.
 """
 
 import json
@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.errors import InvalidInput
-from sonolube.laboratory.block import Block, Channel
+from sonolube.laboratory.block import Block, Channel, Sensor
 from sonolube.laboratory.records.run_folder import CLOCK_NAME
 from sonolube.measurement.measured_files import refuse_unreadable
 from sonolube.vocabulary import quantities
@@ -158,6 +158,7 @@ def raw_header(part: RawPart) -> bytes:
     listed = [
         {name: getattr(channel, name) for name in ("name", "quantity", "unit")}
         | {name: _finite_or_none(getattr(channel, name)) for name in ("lowest", "highest")}
+        | ({} if channel.sensor == Sensor() else {"sensor": asdict(channel.sensor)})
         for channel in part.channels
     ]
     content = {"payload": "<f8", "sample_rate": float(part.sample_rate), "begun": part.begun, "channels": listed}
@@ -345,6 +346,7 @@ def _header(stream: BinaryIO, path: Path) -> RawPart:
                 lowest=-np.inf if each["lowest"] is None else float(each["lowest"]),
                 highest=np.inf if each["highest"] is None else float(each["highest"]),
                 free_unit="" if each["quantity"] in quantities() else str(each.get("unit") or ""),
+                sensor=_sensor(each.get("sensor", {})),
             )
             for each in content["channels"]
         )
@@ -356,6 +358,13 @@ def _header(stream: BinaryIO, path: Path) -> RawPart:
         raise InvalidInput(f"{path}: is no file of raw blocks, or its header is damaged") from None
     end = stream.tell()
     return RawPart(channels=channels, sample_rate=rate, begun=begun, header_bytes=end, whole_bytes=end, clock=clock)
+
+
+def _sensor(content: Mapping[str, Any]) -> Sensor:
+    """Sensor of a channel by what its file tells."""
+    texts = {name: str(content.get(name, "")) for name in ("identifier", "calibration", "calibrated")}
+    uncertainty = content.get("uncertainty")
+    return Sensor(**texts, uncertainty=None if uncertainty is None else float(uncertainty))
 
 
 def _finite_or_none(value: float) -> float | None:

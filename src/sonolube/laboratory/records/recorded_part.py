@@ -4,9 +4,8 @@ Raw blocks are removed once the recording was found to hold every sample.
 """
 
 import json
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
-from datetime import UTC, datetime
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -29,6 +28,7 @@ from sonolube.laboratory.records.run_folder import (
     raw_path,
     read_run_facts,
     recording_path,
+    utc_time,
 )
 from sonolube.laboratory.records.set_point_steps import SET_POINT_CHANNELS, SetPointSteps, set_point_steps
 from sonolube.measurement.recordings.channels_and_parts import join_recordings
@@ -46,6 +46,12 @@ Pieces = Iterator[tuple[Floats, list[Floats]]]
 
 ROWS: Final = 1 << 17
 """Rows of a piece of a recording."""
+
+WAVES: Final = frozenset({"stack_voltage", "stack_current"})
+"""Quantities of which samples are values of the wave itself."""
+
+SENSOR_ATTRIBUTES: Final = ("identifier", "calibration", "calibrated", "uncertainty", "comment")
+"""Attributes of a variable that say how it was measured; the comment, that it is aliased."""
 
 _VOLTAGE: Final = "voltage_peak_to_peak"
 _SET_VOLTAGE: Final = "voltage_peak_to_peak_set"
@@ -78,6 +84,12 @@ class PartOfRecording:
     caveats : list of str
     pieces : callable
         Yields time and columns, piece by piece.
+    measured : mapping of str to (mapping of str to str or float)
+        `SENSOR_ATTRIBUTES` of variables that have any, by their names.
+    read_back : tuple of str
+        Settings that the source of the drive was asked for, each with its time.
+    run_identifier : str
+        UUID of the run.
     damaged : int
         Places of the raw blocks that are no record.
     """
@@ -94,6 +106,9 @@ class PartOfRecording:
     lubricants: tuple[str, ...]
     caveats: list[str]
     pieces: Callable[[], Pieces]
+    measured: Mapping[str, Mapping[str, str | float]]
+    read_back: tuple[str, ...]
+    run_identifier: str
     damaged: int = 0
 
     @property
@@ -112,6 +127,7 @@ def recorded_part(
     steps = set_point_steps(documents, part, first_sample=found.first_sample, facts=facts, own_clock=own)
     variables = _variables(found, steps)
     free = {channel.name: channel.free_unit for channel in found.channels}
+    starts = documents.of("start")
     return PartOfRecording(
         path=path,
         samples=found.samples,
@@ -125,8 +141,44 @@ def recorded_part(
         lubricants=tuple(steps.lubricants),
         caveats=_caveats(found, steps),
         pieces=partial(_pieces, path, found, steps, list(variables)[len(found.channels) :]),
+        measured=_measured(found, steps, variables),
+        read_back=tuple(_read_back(found, steps)),
+        run_identifier=str(starts[0]["uid"]) if starts else "",
         damaged=found.damaged,
     )
+
+
+def _measured(raw: RawPart, steps: SetPointSteps, variables: Mapping[str, str]) -> dict[str, Mapping[str, str | float]]:
+    """Sensors of the variables that channels measure, and whether they are aliased."""
+    found: dict[str, Mapping[str, str | float]] = {}
+    for name, channel in zip(variables, raw.channels, strict=False):
+        told = asdict(channel.sensor)
+        if channel.quantity in WAVES:
+            told["comment"] = _aliasing(raw.sample_rate, steps.frequencies)
+        if stated := {each: told[each] for each in SENSOR_ATTRIBUTES if told.get(each)}:
+            found[name] = stated
+    return found
+
+
+def _aliasing(sample_rate: float, frequencies: Sequence[float]) -> str:
+    """Comment on a wave that is sampled at less than twice the frequency of the drive; empty for any other."""
+    above = [each for each in frequencies if 2 * each > sample_rate]
+    if not above:
+        return ""
+    drive = " to ".join(format_si(each, "Hz", digits=6) for each in dict.fromkeys((above[0], above[-1])))
+    seen = abs(above[0] - sample_rate * round(above[0] / sample_rate))
+    appears = f", at which it appears at {format_si(seen, 'Hz')}" if len(above) == 1 else ""
+    return (
+        f"aliased: the drive at {drive} is above half of the sample rate of {format_si(sample_rate, 'Hz', digits=6)}"
+        f"{appears}; the samples show neither its wave nor its peaks"
+    )
+
+
+def _read_back(raw: RawPart, steps: SetPointSteps) -> Iterator[str]:
+    """Yield settings of the drive as they were read back, each with its time since the first sample."""
+    for sample, answers in steps.read_back:
+        time = 0.0 if sample is None else max(sample - raw.first_sample, 0) / raw.sample_rate
+        yield f"{time:.6g} s: {answers}"
 
 
 def _variables(raw: RawPart, steps: SetPointSteps) -> dict[str, str]:
@@ -212,16 +264,20 @@ def converted_part(path: Path) -> PartOfRecording:
             measured = {name: str(variable.attrs.get("quantity", name)) for name, variable in file.variables.items()}
             units = {name: str(file[name].attrs["units"]) for name, of in measured.items() if of not in quantities()}
             clock = _clock(attributes)
+            told = {
+                name: {each: file[name].attrs[each] for each in SENSOR_ATTRIBUTES if each in file[name].attrs}
+                for name in measured
+            }
+            begun = utc_time(str(attributes["begun"]))
     except (OSError, KeyError, ValueError) as failure:
         raise InvalidInput(f"{path}: is no recording of a run: {failure}") from None
     measured.pop("time")
-    begun = datetime.strptime(str(attributes["begun"]), "%Y-%m-%d %H:%M:%S.%f").replace(tzinfo=UTC)
     return PartOfRecording(
         path=path,
         samples=samples,
         missing=spanned - samples,
         sample_rate=rate,
-        begun=begun.timestamp(),
+        begun=begun,
         variables=measured,
         units={name: "" if unit == "1" else unit for name, unit in units.items()},
         clock=clock,
@@ -229,6 +285,9 @@ def converted_part(path: Path) -> PartOfRecording:
         lubricants=tuple(json.loads(str(attributes.get("lubricants", "[]")))),
         caveats=str(attributes.get("caveats", "")).splitlines(),
         pieces=partial(_pieces_of_file, path, samples, list(measured)),
+        measured={name: each for name, each in told.items() if each},
+        read_back=tuple(str(attributes.get("drive_read_back", "")).splitlines()),
+        run_identifier=str(attributes.get("id", "")),
     )
 
 

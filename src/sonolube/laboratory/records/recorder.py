@@ -10,6 +10,7 @@ from sonolube.errors import InvalidInput
 from sonolube.laboratory.block import Block, Channel
 from sonolube.laboratory.records.documents import EXIT_STATUS, DocumentLog, read_documents
 from sonolube.laboratory.records.raw_blocks import PartClock, RawPart, raw_header, scan_raw
+from sonolube.laboratory.records.recording_files import record_attributes
 from sonolube.laboratory.records.recovery import OpenPart, RunClock, write_missing
 from sonolube.laboratory.records.run import RunSummary, run_summary
 from sonolube.laboratory.records.run_folder import (
@@ -219,7 +220,10 @@ class RunRecorder:
         """
         from sonolube.rig import write_netcdf
 
-        return write_netcdf(dataset, path=self.folder / TRUTH)
+        told = dataset.assign_attrs({**record_attributes(self._known, identifier=self._log.run), **dataset.attrs})
+        for name, variable in told.variables.items():
+            variable.attrs.setdefault("long_name", str(name).replace("_", " "))
+        return write_netcdf(told, path=self.folder / TRUTH)
 
     def finish(self, outcome: str, *, reason: str = "") -> RunSummary:
         """Close the record: write the recording, then how the run ended, and let others in.

@@ -1,8 +1,13 @@
-"""Recordings as files, streamed part by part: netCDF as `sonolube measure` reads it, TDMS, CSV; exports of runs."""
+"""Recordings as files, streamed part by part: netCDF, TDMS, CSV; exports of runs.
+
+The netCDF follows the CF conventions, and those for attributes of the whole file (ACDD), so that others find quantity,
+unit, sensor and time in UTC of every sample; `sonolube measure` reads it.
+"""
 
 import io
 import json
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from datetime import UTC, datetime
 from pathlib import Path
@@ -13,14 +18,27 @@ import numpy as np
 
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.laboratory.records.documents import numbered_parts, part_clocks, read_documents
-from sonolube.laboratory.records.recorded_part import PartOfRecording, converted_part, recorded_part
-from sonolube.laboratory.records.run_folder import UNRESOLVED, RunFacts, raw_parts, read_run_facts, recording_path
+from sonolube.laboratory.records.recorded_part import WAVES, PartOfRecording, converted_part, recorded_part
+from sonolube.laboratory.records.run_folder import (
+    UNRESOLVED,
+    RunFacts,
+    raw_parts,
+    read_run_facts,
+    recording_path,
+    utc_text,
+)
 from sonolube.storage.files import unfinished_file
 from sonolube.vocabulary import quantities, unit_of
 
 _PACKED: Final[Mapping[str, Any]] = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
 _ROWS: Final = 1 << 16  # of a chunk of set points
-_WAVES: Final = {"stack_voltage", "stack_current"}  # quantities of which samples are values of the wave itself
+_STANDARD_NAMES: Final[Mapping[str, str]] = {  # by the table of CF, which has none for tribology
+    **{name: name for name in ("time", "air_temperature", "relative_humidity")},
+    "ambient_temperature": "air_temperature",
+}
+_CALENDAR: Final = {"calendar": "standard", "units_metadata": "leap_seconds: none"}  # as clocks of computers count
+_CONVENTIONS: Final = "CF-1.11, ACDD-1.3"
+_STATED: Final = {"creator_name": ("creator", "operator"), "institution": ("institution",), "license": ("licence",)}
 _CSV_DIGITS: Final = "%.17g"  # what 64-bit floats hold
 
 
@@ -83,29 +101,64 @@ def _define(file: Any, part: PartOfRecording, known: RunFacts) -> None:
     for name, of in {"time": "time", **part.variables}.items():
         quantity = quantities().get(of)
         meaning = of.replace("_", " ") if quantity is None else quantity.meaning
-        packed = _PACKED if name in part.set_points else {}
+        packed = {**_PACKED, "fillvalue": np.nan} if name in part.set_points else {}
         chunks = (max(1, min(_ROWS, part.samples)),) if packed else None
         variable = file.create_variable(name, ("time",), np.float64, chunks=chunks, **packed)
         variable.attrs.update({"units": _unit(part, name) or "1", "long_name": meaning, "quantity": of})
+        variable.attrs.update({**part.measured.get(name, {}), **_flags(name, part.lubricants)})
+        if of in _STANDARD_NAMES:
+            variable.attrs["standard_name"] = _STANDARD_NAMES[of]
+    file["time"].attrs.update({"units": f"seconds since {utc_text(part.begun)}", "axis": "T"} | _CALENDAR)
+
+
+def _flags(name: str, lubricants: Sequence[str]) -> dict[str, Any]:
+    """Meanings of the numbers of a set point that stand for words, as CF has them: words without blanks."""
+    words = {"motor_on": ("off", "on"), "lubricant_set": ("none", *lubricants)}.get(name, ())
+    if not words:
+        return {}
+    plain = [re.sub(r"[^A-Za-z0-9_.+@-]+", "_", word) for word in words]
+    return {"flag_values": np.arange(float(len(plain))), "flag_meanings": " ".join(plain)}
 
 
 def _attributes(part: PartOfRecording, known: RunFacts) -> dict[str, str | float]:
     """Attributes of the file: origin, sample rate and caveats."""
     found: dict[str, str | float] = {
-        "title": known.title,
-        "source": f"sonolube {known.versions.get('sonolube', '')}".strip(),
+        **record_attributes(known, identifier=part.run_identifier),
         "sample_rate": part.sample_rate,
-        "begun": _start(part).astype(datetime).strftime("%Y-%m-%d %H:%M:%S.%f"),
+        "begun": utc_text(part.begun),
         "facts": json.dumps(dict(known.facts)),
     }
+    if part.read_back:
+        found["drive_read_back"] = "\n".join(part.read_back)
     if part.clock is not None:
         found |= {f"clock_{key}": value for key, value in asdict(part.clock).items()}
     if part.lubricants:
         found["lubricants"] = json.dumps(part.lubricants)
     caveats = [*part.caveats]
-    if UNRESOLVED in known.facts and _WAVES & set(part.variables.values()):
+    if UNRESOLVED in known.facts and WAVES & set(part.variables.values()):
         caveats.append(str(known.facts[UNRESOLVED]))
     return found | ({"caveats": "\n".join(caveats)} if caveats else {})
+
+
+def record_attributes(known: RunFacts, *, identifier: str) -> dict[str, str]:
+    """Attributes of every netCDF file of a run: conventions, and where its values come from."""
+    facts = known.facts
+    program = f"sonolube {known.versions.get('sonolube', '')}".strip()
+    stated = {name: next((str(facts[key]) for key in keys if facts.get(key)), "") for name, keys in _STATED.items()}
+    given = {"protocol": facts.get("protocol"), "rig": facts.get("rig") or facts.get("rig_title")}
+    told = {
+        **stated,
+        "id": identifier,
+        "references": "; ".join(f"{kind} {name}" for kind, name in given.items() if name),
+        "comment": "virtual: computed by a model of the rig, not measured" if facts.get("simulated") else "",
+    }
+    return {
+        "Conventions": _CONVENTIONS,
+        "title": known.title,
+        "source": program,
+        "history": f"{utc_text(known.begun)}: run begun, recorded by {program}",
+        **{name: text for name, text in told.items() if text},
+    }
 
 
 def _waveform(part: PartOfRecording, name: str) -> Mapping[str, Any]:

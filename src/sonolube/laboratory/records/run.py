@@ -102,8 +102,8 @@ class RunSummary:
 
     @property
     def begun_text(self) -> str:
-        """Time of the begin in UTC, such as 2026-11-23 01:42:10."""
-        return datetime.fromtimestamp(self.begun, UTC).strftime("%Y-%m-%d %H:%M:%S")
+        """Time of the begin in UTC, such as 2026-11-23T01:42:10Z."""
+        return datetime.fromtimestamp(self.begun, UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
 
 
 @dataclass(frozen=True, kw_only=True)

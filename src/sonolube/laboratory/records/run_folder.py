@@ -74,6 +74,17 @@ class RunFacts:
     recordings: Mapping[str, str] = field(default_factory=dict)
 
 
+def utc_text(time: float) -> str:
+    """Time since 1970 in s as date and time of day in UTC, to the microsecond, such as 2026-11-23T01:42:10.250000Z."""
+    return datetime.fromtimestamp(time, UTC).strftime("%Y-%m-%dT%H:%M:%S.%fZ")
+
+
+def utc_time(text: str) -> float:
+    """Time since 1970 of a date and time of day, which without a zone is one of UTC. [s]"""
+    found = datetime.fromisoformat(text)
+    return (found if found.tzinfo is not None else found.replace(tzinfo=UTC)).timestamp()
+
+
 def raw_path(folder: Path, part: int) -> Path:
     """File of the raw blocks of a part of the recording, from 1."""
     return folder / "raw" / f"blocks-{part}.bin"

@@ -61,6 +61,8 @@ class SetPointSteps:
         Names of the lubricants 1, 2, ...
     drives : bool
         Whether the drive was used in the run before the end of the part.
+    read_back : list of (int or None, str)
+        Sample from which settings held, and what the source answered of them; None for those before the part.
     """
 
     def __init__(self, first_sample: int, facts: Facts) -> None:
@@ -69,6 +71,7 @@ class SetPointSteps:
         self._state |= dict.fromkeys((*_MOTOR, *_DRIVE), float("nan"))
         self._state["normal_load_set"] = float("nan") if load is None else load
         self._first, self.lubricants, self.drives = first_sample, list[str](), False
+        self.read_back = list[tuple[int | None, str]]()
         self._samples, self._rows = list[int](), list[dict[str, float]]()  # set points hold from each sample on
 
     @property
@@ -76,17 +79,27 @@ class SetPointSteps:
         """Channels of which any value is known."""
         return tuple(name for name in SET_POINT_CHANNELS if any(row[name] == row[name] for row in self._rows))
 
+    @property
+    def frequencies(self) -> tuple[float, ...]:
+        """Frequencies of the drive while it was on, ascending. [Hz]"""
+        found = {row["frequency_set"] for row in self._rows if row["voltage_peak_to_peak_set"] > 0}
+        return tuple(sorted(each for each in found if each > 0))
+
     def at(self, name: str, numbers: NDArray[np.int64]) -> NDArray[np.float64]:
         """Values of a channel, in SI, at samples by their numbers; NaN where they are not known."""
         values = np.array([row[name] for row in self._rows])
         return values[np.maximum(np.searchsorted(self._samples, numbers, side="right") - 1, 0)]
 
     def begin(self) -> None:
-        """Begin the part."""
+        """Begin the part, in which the latest settings that were read back hold."""
+        self.read_back = [(None, answers) for _, answers in self.read_back[-1:]]
         self._samples, self._rows = [self._first], [dict(self._state)]
 
     def take(self, data: Mapping[str, Any]) -> None:
         """Update the set points by a note of the run."""
+        if str(data["kind"]) == "read back" and (answers := _facts(data).get("answers")):
+            sample = data.get("sample")
+            self.read_back.append((sample if isinstance(sample, int) else None, str(answers)))
         changes = self._changes(str(data["kind"]), data)
         self._state |= changes
         sample = data.get("sample")
@@ -115,11 +128,7 @@ class SetPointSteps:
             return {name: 0.0 for name in (*_MOTOR, *_DRIVE) if self._state[name] == self._state[name]}
         if kind not in ("drive", "motor", "conditions"):
             return {}
-        try:
-            facts = json.loads(data["facts"])
-        except (ValueError, RecursionError):
-            return {}
-        return self._told(kind, facts) if isinstance(facts, dict) else {}
+        return self._told(kind, _facts(data))
 
     def _told(self, kind: str, facts: Mapping[str, Any]) -> dict[str, float]:
         """Set points by the facts of a note."""
@@ -149,3 +158,12 @@ class SetPointSteps:
         if lubricant not in self.lubricants:
             self.lubricants.append(lubricant)
         return 1.0 + self.lubricants.index(lubricant)
+
+
+def _facts(data: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Facts of a note; none where they are damaged."""
+    try:
+        facts = json.loads(data["facts"])
+    except (ValueError, RecursionError):
+        return {}
+    return facts if isinstance(facts, dict) else {}

@@ -281,6 +281,7 @@ def _axis_column(column: RawColumn, table: RawTable, path: Path, quantity: str, 
     stated = source.unit if source.unit is not None else column.unit
     if stated is None:
         return values
+    stated = stated.partition(" since ")[0]  # of a time by the CF conventions, which begins at a date
     return convert_to_si(values, written_unit=stated, unit=unit_of(quantity), name=f"{path}: {column.label!r}")
 
 

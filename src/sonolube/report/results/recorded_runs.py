@@ -22,7 +22,7 @@ def run_rows(run: Run) -> list[tuple[str, str]]:
     """Outcome, channels, duration, facts, versions and files of a run."""
     summary, known = run.summary, run.known
     return [
-        ("begun", f"{summary.begun_text} UTC"),
+        ("begun", summary.begun_text),
         ("outcome", summary.outcome + (f": {summary.reason}" if summary.reason else "")),
         ("channels", ", ".join(each.described for each in run.channels.values()) or "none"),
         *((f"clock {clock}", ", ".join(path.name for path in paths)) for clock, paths in run.clocks.items()),
