@@ -16,6 +16,7 @@ import sonolube
 from sonolube import models
 from sonolube.cli import main
 from sonolube.cli.app import COMMANDS as TABLE
+from sonolube.facts.materials import material_names
 from sonolube.rig import rig_schema
 
 ROOT = Path(__file__).parents[1]
@@ -54,6 +55,12 @@ def documented_modules() -> set[str]:
 def anchors_of(page: Path) -> set[str]:
     headings = re.findall(r"^#+ (.*)$", text_of(page), flags=re.MULTILINE)
     return {re.sub(r"[^\w\- ]", "", heading).strip().lower().replace(" ", "-") for heading in headings}
+
+
+def test_every_material_that_an_example_names_is_in_the_catalogue() -> None:
+    named = re.findall(r"^(?:pin|disc)_material = \"(\w+)\"", text_of(*PAGES), flags=re.MULTILINE)
+    assert named
+    assert set(named) <= {*material_names()}
 
 
 @pytest.mark.parametrize("name", COMMANDS)
