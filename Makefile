@@ -3,6 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 RIVAL := .venv-surfalize
+CF := .venv-cf
 LOWEST := .venv-lowest
 INSTALL := $(BIN)/uv pip install --quiet --compile-bytecode --python $(BIN)/python
 RUN := OPENBLAS_NUM_THREADS=1 MPLBACKEND=Agg
@@ -14,9 +15,11 @@ SCRIPTS := 'src/sonolube/browser/static/{link,scripts/**/*}.js'
 NPX = npx --yes --prefer-offline --package $(filter $(1)@%,$(shell cat requirements/node.txt)) --
 # surfalize (GPL) is run as a program of its own, by the tests and benchmarks that compare with it, where `make surfalize` has put it
 export SURFALIZE_PYTHON ?= $(abspath $(wildcard $(RIVAL)/bin/python))
+# the checker of the CF conventions, too, for its 20 packages are needed by nothing else
+export CF_CHECKER ?= $(abspath $(wildcard $(CF)/bin/compliance-checker))
 
 .DEFAULT_GOAL := help
-.PHONY: help demo app browser quick test test-rest test-all times arithmetic lowest surfalize lint docs bench reliability lock clean
+.PHONY: help demo app browser quick test test-rest test-all times arithmetic lowest surfalize cf lint docs bench reliability lock clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 16
@@ -61,6 +64,8 @@ arithmetic: $(VENV)/test ## run a part of the tests with the loops of other proc
 
 surfalize: $(RIVAL)/installed ## install surfalize beside sonolube, for the tests that compare with it
 
+cf: $(CF)/installed ## install the checker of the CF conventions beside sonolube, for the tests that ask it
+
 lint: $(VENV)/test ## mend what ruff and prettier can mend, then check style, types and architecture
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
@@ -93,9 +98,11 @@ lock: $(VENV)/uv ## pin and hash every dependency for Python 3.11 to 3.13
 	    pyproject.toml --group test --group bench -c requirements/test.txt -o requirements/bench.txt
 	echo "surfalize>=0.19.2" | $(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
 	    - -o requirements/surfalize.txt
+	echo "compliance-checker>=6.1" | $(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
+	    --only-binary :all: - -o requirements/cf.txt
 
 clean: ## remove the environment and everything generated
-	rm -rf $(VENV) $(RIVAL) $(LOWEST) $(OUT) .mypy_cache .pytest_cache .ruff_cache .hypothesis .import_linter_cache .benchmarks
+	rm -rf $(VENV) $(RIVAL) $(CF) $(LOWEST) $(OUT) .mypy_cache .pytest_cache .ruff_cache .hypothesis .import_linter_cache .benchmarks
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # -- environments: one, which grows as targets ask for more
@@ -126,6 +133,11 @@ $(VENV)/test: $(VENV)/runtime requirements/test.txt
 $(RIVAL)/installed: $(VENV)/uv requirements/surfalize.txt
 	test -x $(RIVAL)/bin/python || $(PYTHON) -m venv $(RIVAL)
 	$(BIN)/uv pip install --quiet --python $(RIVAL)/bin/python --require-hashes -r requirements/surfalize.txt
+	@touch $@
+
+$(CF)/installed: $(VENV)/uv requirements/cf.txt
+	test -x $(CF)/bin/python || $(PYTHON) -m venv $(CF)
+	$(BIN)/uv pip install --quiet --python $(CF)/bin/python --only-binary :all: --require-hashes -r requirements/cf.txt
 	@touch $@
 
 $(LOWEST)/installed: $(VENV)/uv pyproject.toml
