@@ -1,6 +1,7 @@
 """Sections of a device map and limits of outputs: voltages, gains and names by hand."""
 
 from dataclasses import replace
+from datetime import date
 from math import inf
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
-from sonolube.laboratory.block import Block, Channel
+from sonolube.laboratory.block import Block, Channel, Sensor
 from sonolube.laboratory.devices import DeviceError, DriveSetting, SamplesLost, require_gapless
 from sonolube.laboratory.drivers.daqmx_library import daqmx_resource
 from sonolube.laboratory.drivers.daqmx_output import whole_periods
@@ -175,3 +176,24 @@ def test_a_device_of_ni_daqmx_is_named_without_its_terminal() -> None:
 
 def test_names_are_listed_with_or_before_the_last() -> None:
     assert (_listed(["a"]), _listed(["a", "b"]), _listed(["a", "b", "c"])) == ("a", "a or b", "a, b or c")
+
+
+@pytest.mark.parametrize(
+    ("stated", "reason"),
+    [
+        ({"calibrated": "March 2026"}, "calibrated must be a date such as 2026-03-01, got 'March 2026'"),
+        ({"uncertainty": "0.5 degC"}, "uncertainty 0.5 degC is a temperature; expected a temperature difference"),
+        ({"uncertainty": "0 K"}, "uncertainty must be positive, got 0 K"),
+        ({"uncertainty": "1 N"}, "uncertainty 1 N is a force"),
+    ],
+)
+def test_a_sensor_has_a_date_and_an_uncertainty_in_the_unit_of_its_channel(stated: dict[str, str], reason: str) -> None:
+    with raises(ValueError, match=reason):
+        ChannelEntry.model_validate({"name": "temperature", **stated})
+    told: dict[str, object] = {
+        "identifier": "TC-1",
+        "calibrated": date(2026, 3, 1),
+        "uncertainty": "500 mK",
+    }  # a date as TOML has it
+    sensor = ChannelEntry.model_validate({"name": "temperature", **told}).channel(calibration="gain 1 K/V").sensor
+    assert sensor == Sensor(identifier="TC-1", calibration="gain 1 K/V", calibrated="2026-03-01", uncertainty=0.5)

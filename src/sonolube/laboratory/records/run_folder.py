@@ -74,9 +74,9 @@ class RunFacts:
     recordings: Mapping[str, str] = field(default_factory=dict)
 
 
-def utc_text(time: float) -> str:
+def utc_text(moment: float) -> str:
     """Time since 1970 in s as date and time of day in UTC, to the microsecond, such as 2026-11-23T01:42:10.250000Z."""
-    return datetime.fromtimestamp(time, UTC).strftime("%Y-%m-%dT%H:%M:%S.%fZ")
+    return datetime.fromtimestamp(moment, UTC).strftime("%Y-%m-%dT%H:%M:%S.%fZ")
 
 
 def utc_time(text: str) -> float:
