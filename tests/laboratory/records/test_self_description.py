@@ -105,7 +105,7 @@ def test_a_channel_of_a_device_map_has_its_calibration_in_the_file(tmp_path: Pat
     with xr.open_dataset(path) as data:
         force = data["friction_force"].attrs
         assert force["calibration"] == "gain 4 N/V, offset -0.012 N"
-        assert (force["identifier"], force["calibrated"], force["uncertainty"]) == ("LCM-1234", "2026-03-01", 0.02)
+        assert (force["identifier"], force["uncertainty"]) == ("LCM-1234", 0.02)
         assert data["temperature"].attrs["calibration"] == "gain 100 K/V, offset 0 degC"
         assert data["stack_voltage"].attrs["comment"].startswith("aliased: the drive at 22 kHz is above half")
 
