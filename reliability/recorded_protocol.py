@@ -43,7 +43,15 @@ class MemoryRecord:
         """End a part."""
 
     def begin_beside(
-        self, clock: str, channels: Sequence[Channel], *, sample_rate: float, first: int, ago: float, uncertainty: float
+        self,
+        clock: str,
+        channels: Sequence[Channel],
+        *,
+        sample_rate: float,
+        first: int,
+        ago: float,
+        uncertainty: float,
+        offset: float | None = None,
     ) -> None:
         """Leave out other clocks."""
 

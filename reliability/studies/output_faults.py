@@ -3,19 +3,18 @@
 from collections.abc import Sequence
 
 from reliability.study import Measure, Record, Study
-from sonolube.laboratory.driver_trial import drivers_to_try, faults_of, try_fault
+from sonolube.laboratory.driver_trial import DriversToTry, Fault, faults_of, try_fault
 
-_BENCH = "tests.laboratory.drivers.pretended_bench"  # a function generator and a motor by their own drivers
-TRIALS = (
-    *(("", fault) for fault in faults_of(("drive", "motor", "acquisition"))),
-    *((_BENCH, fault) for fault in faults_of(("drive", "motor"))),
-)
-"""Module of the drivers, empty where all devices are pretended, and fault."""
+FAULTS = faults_of(("drive", "motor", "acquisition"))
 
 
 def _trial(seed: int) -> Record:
-    module, fault = TRIALS[seed]
-    found = try_fault(drivers_to_try(module) if module else None, fault)
+    return record_of(None, FAULTS[seed])
+
+
+def record_of(drivers: DriversToTry | None, fault: Fault) -> Record:
+    """Record of a run of drivers, or of pretended devices alone, with a fault."""
+    found = try_fault(drivers, fault)
     return {
         "fault": f"{fault.where}: {fault.kind}",
         "on": found.is_on,
@@ -28,7 +27,8 @@ def _trial(seed: int) -> Record:
     }
 
 
-def _measures(records: Sequence[Record]) -> list[Measure]:
+def measures_of(records: Sequence[Record]) -> list[Measure]:
+    """Runs whose end was told wrongly."""
     on = [record for record in records if record["on"]]
     measured = [record for record in on if str(record["told"]).startswith("measured off")]
     confirmed = [record for record in on if str(record["told"]).startswith("confirmed off")]
@@ -55,20 +55,21 @@ def _none(label: str, found: Sequence[Record]) -> Measure:
     return Measure(label=label, value=f"{len(found)}{first}", bar="0", holds=not found)
 
 
+SOURCES = (
+    "laboratory/*.py",
+    "laboratory/switch_off/*.py",
+    "laboratory/driver_trial/*.py",
+    "laboratory/records/recovery.py",
+)
+
 STUDY = Study(
     title="Faults of outputs",
-    question="A run meets a fault: a call that hangs, returns late, keeps the interpreter, raises, dies, is stopped,"
-    " gives wrong blocks or lies; a full disk, a clock that is set. Its devices are pretended, or those of a function"
-    " generator and a motor by their drivers, with pretended instruments. Does every run end with a verdict on motor"
-    " and drive that the log, or the instruments, bear out?",
-    sources=(
-        "laboratory/*.py",
-        "laboratory/switch_off/*.py",
-        "laboratory/driver_trial/*.py",
-        "laboratory/records/recovery.py",
-    ),
-    trials=len(TRIALS),
+    question="A run on a pretended rig, whose hardware is a log, meets a fault: a call that hangs, returns late, keeps"
+    " the interpreter, raises, dies, is stopped, gives wrong blocks or lies; a full disk, a clock that is set. Does"
+    " every run end with a verdict on motor and drive that the log bears out?",
+    sources=SOURCES,
+    trials=len(FAULTS),
     sample=1,
     trial=_trial,
-    measures=_measures,
+    measures=measures_of,
 )

@@ -761,6 +761,15 @@ MODES = {
         "lab virtual",
         (str(RIGS / "power_map.toml"), "--protocol", "FOLDER/short.toml"),
         {"--protocol": "FOLDER/shorter.toml", "--seed": "1", "--format": "csv", **LOADED},
+        ("--dry-run",),
+    ),
+    "lab virtual with a map": Mode(
+        "lab virtual",
+        (
+            *(str(RIGS / "power_map.toml"), "--protocol", "FOLDER/short.toml"),
+            *("--device", str(ROOT / "examples" / "lab" / "siglent_sdg.toml")),
+        ),
+        {"--device": str(ROOT / "examples" / "lab" / "rigol_dg1000z.toml"), "--fault": "friction_reversed"},
     ),
     "lab virtual with a drive": Mode("lab virtual", (str(RIGS / "power_map.toml"),), AMPLITUDE),
     "lab hold": Mode(

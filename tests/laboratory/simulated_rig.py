@@ -151,7 +151,15 @@ class MemoryRecord:
             self.is_open = False
 
     def begin_beside(
-        self, clock: str, channels: Sequence[Channel], *, sample_rate: float, first: int, ago: float, uncertainty: float
+        self,
+        clock: str,
+        channels: Sequence[Channel],
+        *,
+        sample_rate: float,
+        first: int,
+        ago: float,
+        uncertainty: float,
+        offset: float | None = None,
     ) -> None:
         assert self.is_open
         assert clock not in self.open_beside

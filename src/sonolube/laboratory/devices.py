@@ -239,9 +239,20 @@ class Recorder(Protocol):
         """End the recording of the run, or of another clock."""
 
     def begin_beside(
-        self, clock: str, channels: Sequence[Channel], *, sample_rate: float, first: int, ago: float, uncertainty: float
+        self,
+        clock: str,
+        channels: Sequence[Channel],
+        *,
+        sample_rate: float,
+        first: int,
+        ago: float,
+        uncertainty: float,
+        offset: float | None = None,
     ) -> None:
-        """Begin a recording of another clock, whose first sample was taken some time ago, beside that of the run."""
+        """Begin a recording of another clock, whose first sample was taken some time ago, beside that of the run.
+
+        Of virtual devices the offset tells when: after the first sample of the recording of the run, in s.
+        """
 
     def note(self, kind: str, *, sample: int | None = None, **facts: str | float) -> None:
         """Keep what happened."""
@@ -263,6 +274,8 @@ class Devices:
         Kind, serial number and settings of each, for the record of a run.
     simulated : bool
         Whether no hardware moves.
+    rehearsed : bool
+        Whether simulated devices stand for those of a device map, and set and measured voltages are compared as theirs.
     groove_diameter : float
         Of the circle under the pin, which turns sliding speeds into those of the disc. [m]
     prepare : callable or None
@@ -288,6 +301,7 @@ class Devices:
     description: Mapping[str, str]
     groove_diameter: float
     simulated: bool = False
+    rehearsed: bool = False
     prepare: Callable[[DriveSetting | None, float], None] | None = None
     resources: tuple[str, ...] = ()
     guard: OutputGuard | None = None

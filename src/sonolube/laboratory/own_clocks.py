@@ -1,4 +1,4 @@
-"""Acquisitions with clocks of their own, watched by threads.
+"""Acquisitions with clocks of their own, watched by threads; virtual ones as the time of their rig goes on.
 
 A thread has its device from the first call to the last, so that one that hangs keeps no other waiting. A run takes
 what was read, and looks for what is wrong, with every block of its own clock: a sample beyond a limit, an error, lost
@@ -10,7 +10,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from threading import Event as Signal, Lock, Thread
-from typing import Final
+from typing import Any, Final, Protocol, cast
 
 import numpy as np
 
@@ -39,6 +39,16 @@ _POLL: Final = 0.1  # s
 _MAX_WAITING: Final = 10_000  # blocks that nobody has taken
 
 
+class VirtualAcquisition(Acquisition, Protocol):
+    """Acquisition of a virtual rig beside the one that its time goes on with."""
+
+    waiting: int
+    """Samples that were taken and not read."""
+
+    def follow(self, take: Callable[[], None]) -> None:
+        """Call a function whenever samples were taken."""
+
+
 class OwnClocks:
     """Acquisitions of a run beside the one whose clock is that of the protocol.
 
@@ -52,16 +62,17 @@ class OwnClocks:
     """
 
     def __init__(self, devices: Devices, limits: RunLimits, watcher: RunWatcher | None = None) -> None:
-        self._readers = [
-            _Reader(
-                clock,
-                device,
-                [lock for lock in limits.locks if lock.channel.name in device.channels],
-                [(what, lock) for what, lock in limits.off if lock.channel.name in device.channels],
-                watcher,
+        now = devices.clock
+        self._readers: list[_Reader] = []
+        for clock, device in devices.further.items():
+            own = [lock for lock in limits.locks if lock.channel.name in device.channels]
+            own_off = [(what, lock) for what, lock in limits.off if lock.channel.name in device.channels]
+            is_virtual = now is not None and hasattr(device, "follow")
+            self._readers.append(
+                _VirtualReader(clock, cast(VirtualAcquisition, device), own, own_off, watcher, cast(Any, now))
+                if is_virtual
+                else _Reader(clock, device, own, own_off, watcher)
             )
-            for clock, device in devices.further.items()
-        ]
 
     def begin(self, end_if_asked: Callable[[], None]) -> None:
         """Connect all and start to sample.
@@ -171,8 +182,9 @@ class _Reader:
         locks: Sequence[Interlock],
         off: Sequence[tuple[str, Interlock]],
         watcher: RunWatcher | None,
+        now: Callable[[], float] = time.monotonic,
     ) -> None:
-        self.clock, self.device, self._watcher = clock, device, watcher
+        self.clock, self.device, self._watcher, self._now = clock, device, watcher, now
         self._locks, self._off = locks, off
         self._names = list(device.channels)
         self.has_started, self.has_ended = Signal(), Signal()
@@ -194,7 +206,7 @@ class _Reader:
     def look(self) -> None:
         """Raise the failure of the thread, or one for a late block."""
         with self._held:
-            failure, is_late = self._failure, self._rate > 0 and time.monotonic() > self._due
+            failure, is_late = self._failure, self._rate > 0 and self._now() > self._due
         if failure is not None:
             raise failure
         if is_late:
@@ -203,7 +215,7 @@ class _Reader:
     def stands(self, alarm: Callable[[str], None] | None) -> None:
         """Set the function that takes alarms while motor and drive are off; None when they may be on again."""
         with self._held:
-            self._alarm, self._stands_since = alarm, time.monotonic()
+            self._alarm, self._stands_since = alarm, self._now()
             failure = self._failure
         if alarm is not None and failure is not None:
             alarm(str(failure))
@@ -220,19 +232,23 @@ class _Reader:
         while columns and (taken := self._next_waiting()) is not None:
             block, arrived = taken
             if not self._is_begun:
-                lasts = block.samples / self._rate
                 recorder.begin_beside(
                     self.clock,
                     [self.device.channels[name] for name in self._recorded],
-                    sample_rate=self._rate,
+                    sample_rate=block.sample_rate,
                     first=block.first_sample,
-                    ago=time.monotonic() - arrived + lasts - 1 / self._rate,
-                    uncertainty=lasts + BLOCK_DURATION,
+                    **self._beginning(block, arrived),
                 )
                 self._is_begun = True
             values = block.values[:, columns]
-            kept = Block(first_sample=block.first_sample, sample_rate=self._rate, values=values)
+            kept = Block(first_sample=block.first_sample, sample_rate=block.sample_rate, values=values)
             recorder.append(kept, clock=self.clock)
+
+    def _beginning(self, block: Block, arrived: float) -> dict[str, float]:
+        """Time since the first sample of a block that came at a time, and its uncertainty, in s."""
+        lasts = block.samples / block.sample_rate
+        since = self._now() - arrived + lasts - 1 / block.sample_rate
+        return {"ago": since, "uncertainty": lasts + BLOCK_DURATION}
 
     def end_recording(self, recorder: Recorder) -> None:
         """Record no more; that nothing was recorded is noted."""
@@ -311,7 +327,67 @@ class _Reader:
         with self._held:
             self._latest = block
             if self._recorded:
-                self._waiting.append((block, time.monotonic()))
-            stood = time.monotonic() - self._stands_since if self._alarm is not None else 0.0
+                self._waiting.append((block, self._now()))
+            stood = self._now() - self._stands_since if self._alarm is not None else 0.0
         if on := still_on(block, self._names, self._off, stood):
             raise RunEnded(Event.TRIP, on)
+
+
+class _VirtualReader(_Reader):
+    """One virtual acquisition, read as the time of its rig goes on: the same blocks in every run, and none is late."""
+
+    device: VirtualAcquisition
+
+    def __init__(
+        self,
+        clock: str,
+        device: VirtualAcquisition,
+        locks: Sequence[Interlock],
+        off: Sequence[tuple[str, Interlock]],
+        watcher: RunWatcher | None,
+        now: Callable[[], float],
+    ) -> None:
+        super().__init__(clock, device, locks, off, watcher, now)
+        self._count, self._taken, self._epoch, self._recorded_from = 1, 0, 0.0, 0.0
+
+    def begin(self) -> None:
+        """Connect, and start to sample."""
+        wanted = next(iter(self.device.channels.values())).sample_rate
+        assert wanted is not None
+        try:
+            self.device.connect()
+            rate = float(self.device.start(self._names, sample_rate=wanted))
+            self._count = max(1, round(BLOCK_DURATION * require_rate(rate, wanted, device=self.device.name)))
+            self._epoch, self._taken = self._now(), 0
+            self.device.follow(self._catch_up)
+        except SonolubeError as failure:
+            self._fails(failure)
+        self.has_started.set()
+
+    def record(self, channels: list[str]) -> None:
+        """Record channels from now on."""
+        super().record(channels)
+        self._recorded_from = self._now()
+
+    def end(self, latest: float) -> str:
+        """Stop and release the device."""
+        for release in (self.device.stop, self.device.close):
+            with suppress(Exception):  # as those of a thread
+                release()
+        return ""
+
+    def _beginning(self, block: Block, arrived: float) -> dict[str, float]:
+        """Time of the first sample of a block after that of the run, exact on the one clock of the rig."""
+        offset = self._epoch + block.start - self._recorded_from
+        return {"ago": self._now() - self._epoch - block.start, "uncertainty": 1 / block.sample_rate, "offset": offset}
+
+    def _catch_up(self) -> None:
+        """Read the blocks that are whole."""
+        try:
+            while self._failure is None and self.device.waiting >= self._count:
+                block = self.device.read(self._count)
+                require_gapless(block, self._taken, device=self.device.name)
+                self._taken = block.next_sample
+                self._take(block)
+        except SonolubeError as failure:
+            self._fails(failure)

@@ -64,8 +64,9 @@ def run_protocol(
     watcher : RunWatcher, optional
         Shown set points, blocks and events.
     self_test : bool
-        Of devices that are not simulated, drive at a tenth of the first voltage for 0.3 s before the first step and
-        compare it with what a channel measures, and do so at every block. It vibrates the specimens.
+        Of devices that are not simulated, or stand for those of a device map, drive at a tenth of the first voltage for
+        0.3 s before the first step and compare it with what a channel measures, and do so at every block. It vibrates
+        the specimens.
 
     Returns
     -------

@@ -238,7 +238,8 @@ class SupervisedRun(ABC):
     control : RunControl
     watcher : RunWatcher, optional
     self_test : bool
-        Whether what a channel measures of the drive is held to what was set, where the devices are not simulated.
+        Whether what a channel measures of the drive is held to what was set, on devices that are not simulated and
+        on those of a map that is rehearsed.
     """
 
     _clocks: OwnClocks
@@ -254,7 +255,7 @@ class SupervisedRun(ABC):
         *,
         self_test: bool,
     ) -> None:
-        self._tests_itself = self_test and not devices.simulated
+        self._tests_itself = self_test and (devices.rehearsed or not devices.simulated)
         self._supervisor, self._watcher = Supervisor(devices), watcher
         self._devices, self._recorder, self._control = self._supervisor.devices, recorder, control
         self._present, self._is_connected = RunState(), False

@@ -317,7 +317,9 @@ def analyse_rotation(
     .. [1] D 4.1.1.
     """
     pulses = hall_pulse_times(**_channels(recording, "magnetic_flux_density"), prominence=prominence)
-    return disc_rotation(time=pulses, groove_diameter=groove_diameter, magnets=magnets)
+    time = channel_values(recording, "time")
+    interval = float(time[-1] - time[0]) / max(time.size - 1, 1)
+    return disc_rotation(time=pulses, groove_diameter=groove_diameter, magnets=magnets, sample_interval=interval)
 
 
 def analyse_wobble(

@@ -86,8 +86,8 @@ def test_the_devices_of_a_map_are_driven_and_end_off(
     sonolube: Program, rigs: Path, tmp_path: Path, monkeypatch: MonkeyPatch
 ) -> None:
     monkeypatch.setattr(rig_stand_ins, "voltages", lambda terminal, numbers: 0.2 + 0 * numbers)  # V at every input
-    options = ("--duration", "1s", "--run-in", "0.1s", "--rate", "50Hz", "--delay", "0s", "--step-to", "30mm/s")
-    options = (*options, "--no-self-test")  # the inputs here follow no drive
+    options = ["--duration", "1s", "--run-in", "0.1s", "--rate", "50Hz", "--delay", "0s", "--step-to", "30mm/s"]
+    options.append("--no-self-test")  # the inputs here follow no drive
     with instrument_rig(tmp_path) as rig:
         answer = sonolube(
             *("lab", "hold", rigs / "tribometer.toml", "--device", tmp_path / "devices.toml", *options),

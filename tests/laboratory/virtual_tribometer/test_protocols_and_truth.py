@@ -52,6 +52,13 @@ SETTINGS = {  # loads in N, speeds in mm/s, voltages: D Tables 2.2, 2.6, 4.2, 4.
 }
 
 
+def recorded(*rig: Any, **arguments: Any) -> RunAnswer:
+    """Answer of a virtual run that is no dry one."""
+    answer = lab.virtual(*rig, **arguments)
+    assert isinstance(answer, RunAnswer)
+    return answer
+
+
 def shortened(
     steps: tuple[Step, ...], *, longest: float = LONGEST, sample_rate: float | None = None
 ) -> tuple[Step, ...]:
@@ -82,7 +89,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Any:
     def make(name: str, seed: int) -> Path:
         parent = tmp_path_factory.mktemp(f"{name}-{seed}")
         (parent / "protocol.toml").write_text(protocol_text(protocol_of(name)))
-        found = lab.virtual(RIG, protocol=parent / "protocol.toml", seed=seed, out=parent / "runs")
+        found = recorded(RIG, protocol=parent / "protocol.toml", seed=seed, out=parent / "runs")
         assert not found.is_failure, found.run.summary.reason
         return found.run.folder
 
@@ -166,7 +173,7 @@ def test_bursts_of_stick_slip_are_those_of_the_truth_where_the_rate_shows_them(t
     protocol = protocol_by_name_or_file("study_2")
     steps = shortened(protocol.steps, longest=20.0, sample_rate=4000.0)
     (tmp_path / "fast.toml").write_text(protocol_text(protocol.model_copy(update={"steps": steps})))
-    folder = lab.virtual(RIG, protocol=tmp_path / "fast.toml", seed=seed, out=tmp_path / "runs").run.folder
+    folder = recorded(RIG, protocol=tmp_path / "fast.toml", seed=seed, out=tmp_path / "runs").run.folder
     truth, run = xr.load_dataset(folder / "truth" / "truth.nc", engine="h5netcdf"), read_run(folder)
     fractions = truth["stick_slip_fraction"].to_numpy()
     fractions = fractions[(fractions > 0) & (truth["sliding_speed"].to_numpy() > 0)]
@@ -180,7 +187,7 @@ def test_stick_slip_at_low_speed_has_the_frequency_and_fall_of_the_truth(tmp_pat
     protocol = protocol_at(protocol_by_name_or_file("map_test"), normal_load=5.0, sliding_speed=speed)
     steps = shortened(protocol.steps, longest=LONGEST, sample_rate=4000.0)
     (tmp_path / "slow.toml").write_text(protocol_text(protocol.model_copy(update={"steps": steps})))
-    folder = lab.virtual(RIG, protocol=tmp_path / "slow.toml", seed=4, out=tmp_path / "runs").run.folder
+    folder = recorded(RIG, protocol=tmp_path / "slow.toml", seed=4, out=tmp_path / "runs").run.folder
     truth = xr.load_dataset(folder / "truth" / "truth.nc", engine="h5netcdf")
     recording = read_run(folder).dataset()
     time = recording["time"].to_numpy()
@@ -195,7 +202,7 @@ def next_of(answer: RunAnswer) -> list[str]:
 
 
 def test_the_resonance_sweep_leads_to_the_resonance_of_the_structure(tmp_path: Path) -> None:
-    answer = lab.virtual(RIG, protocol="resonance_sweep", out=tmp_path)
+    answer = recorded(RIG, protocol="resonance_sweep", out=tmp_path)
     assert next_of(answer) == ["sonolube", "measure", "impedance", str(answer.run.folder)]
     found = swept_impedance(answer.run.recordings[0])
     assert found is not None
@@ -208,7 +215,7 @@ def test_the_resonance_sweep_leads_to_the_resonance_of_the_structure(tmp_path: P
 
 
 def test_the_waveguide_calibration_leads_to_the_stiffness_of_the_truth(tmp_path: Path) -> None:
-    answer = lab.virtual(RIG, protocol="waveguide_calibration", out=tmp_path)
+    answer = recorded(RIG, protocol="waveguide_calibration", out=tmp_path)
     loops, test = answer.run.recordings
     assert next_of(answer) == ["sonolube", "measure", "calibration", str(loops), "--apply", str(test)]
     truth = xr.load_dataset(answer.run.folder / "truth" / "truth.nc", engine="h5netcdf")
@@ -224,7 +231,7 @@ def test_the_decay_length_run_leads_to_the_forces_of_the_truth_and_to_no_change(
     assert isinstance(switched, Repeat)
     few = switched.model_copy(update={"count": 5, "steps": shortened(switched.steps, longest=6.0)})
     (tmp_path / "run.toml").write_text(protocol_text(protocol.model_copy(update={"steps": (*before, few)})))
-    answer = lab.virtual(RIG, protocol=tmp_path / "run.toml", seed=1, out=tmp_path / "runs")
+    answer = recorded(RIG, protocol=tmp_path / "run.toml", seed=1, out=tmp_path / "runs")
     folder = answer.run.folder
     assert next_of(answer) == ["sonolube", "identify", "decay-length", str(folder)]
     truth = xr.load_dataset(folder / "truth" / "truth.nc", engine="h5netcdf")

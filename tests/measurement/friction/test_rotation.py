@@ -137,13 +137,37 @@ def test_a_reading_with_missing_values_or_without_a_pulse_is_read_or_refused() -
             hall_pulse_times(time=t, magnetic_flux_density=b, prominence=prominence)
 
 
+def test_one_turn_is_known_by_a_count_of_the_samples_at_both_ends_and_by_the_clock() -> None:
+    one = disc_rotation(time=[2.0, 2.5], groove_diameter=0.04)
+    assert one.rotation_speed_uncertainty == approx(2 * 5e-5 / np.sqrt(3))
+    counted = disc_rotation(time=[2.0, 2.5], groove_diameter=0.04, sample_interval=0.01)
+    assert counted.rotation_speed_uncertainty == approx(2 * np.sqrt(2) * (0.01 / np.sqrt(12)) / 0.5, rel=1e-4)
+    with raises(InvalidInput, match="sample_interval must not be negative"):
+        disc_rotation(time=[2.0, 2.5], groove_diameter=0.04, sample_interval=-1.0)
+
+
+@pytest.mark.parametrize("turns", [12, 60])
+def test_the_mean_speed_lies_within_its_uncertainty_as_often_as_it_says(turns: int) -> None:
+    rng = np.random.default_rng(3)
+    scores = []
+    for _ in range(400):
+        times = np.arange(turns + 1) / 1.5 + rng.normal(0, 0.004, turns + 1)
+        found = disc_rotation(time=times, groove_diameter=0.04)
+        scores.append((found.mean_rotation_speed - 1.5) / found.rotation_speed_uncertainty)
+    assert np.mean(scores) == approx(0.0, abs=0.2)
+    assert 0.8 < np.std(scores) < 1.15
+    assert 0.92 < np.mean(np.abs(scores) < 1.96) < 0.98
+
+
 def test_speeds_follow_from_each_revolution_and_the_uncertainty_from_their_scatter() -> None:
     found = disc_rotation(time=[2.0, 2.5, 3.3, 4.3], groove_diameter=0.04)
     assert found.rotation_speed == approx([2.0, 1.25, 1.0])
     assert found.sliding_speed == approx(np.pi * 0.04 * np.array([2.0, 1.25, 1.0]))
     assert found.mean_rotation_speed == approx(3 / 2.3)
-    assert found.rotation_speed_uncertainty >= np.std([2.0, 1.25, 1.0], ddof=1) / np.sqrt(3) * 0.999
-    assert disc_rotation(time=[2.0, 2.5], groove_diameter=0.04).rotation_speed_uncertainty == 0.0
+    # second differences 0.3 s and 0.2 s: a pulse is known to sqrt((0.3**2 + 0.2**2) / 2 / 6) s
+    pulse = np.sqrt((0.3**2 + 0.2**2) / 12)
+    few = 12.14 / 1.96  # Student's factor of 95 % for 2 / 1.944 = 1.029 independent ones, by its table near 12.7 of one
+    assert found.rotation_speed_uncertainty == approx(few * 3 / 2.3 * np.sqrt(2) * pulse / 2.3, rel=0.02)
     with raises(InvalidInput, match="groove_diameter must be positive"):
         disc_rotation(time=[2.0, 2.5], groove_diameter=0.0)
     with raises(InvalidInput, match="a revolution needs 4 pulses, got 3"):

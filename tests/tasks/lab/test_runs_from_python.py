@@ -223,6 +223,7 @@ def test_a_dry_run_touches_nothing(folder: Path, protocol: Path) -> None:
 
 def test_entries_that_were_replaced_stand_in_the_record_of_a_virtual_run(folder: Path, protocol: Path) -> None:
     answer = lab.virtual(read_rig(RIG, changes=["contact.normal_load=2N"]), protocol=protocol, out=folder)
+    assert isinstance(answer, RunAnswer)
     assert answer.run.facts["changed_entries"] == "contact.normal_load=2N"
 
 

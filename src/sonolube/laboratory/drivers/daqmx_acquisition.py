@@ -31,6 +31,12 @@ SensorScale = Callable[[Floats], Floats]
 
 def tabulated_scale(text: str, *, quantity: str, unit: str | None = None) -> SensorScale:
     """Scale of the text of a calibration file, linear between its points and saturated beyond them."""
+    voltages, readings = calibration_points(text, quantity=quantity, unit=unit)
+    return lambda given: np.interp(given, voltages, readings)
+
+
+def calibration_points(text: str, *, quantity: str, unit: str | None = None) -> tuple[Floats, Floats]:
+    """Rising voltages, in V, and readings, in SI, of the text of a calibration file."""
     rows = [[cell.strip() for cell in row] for row in csv.reader(text.splitlines()) if row]
     if not rows or rows[0] != ["voltage", quantity]:
         raise InvalidInput(f"line 1: expected voltage,{quantity}")
@@ -43,7 +49,7 @@ def tabulated_scale(text: str, *, quantity: str, unit: str | None = None) -> Sen
         raise InvalidInput("the voltages must increase from line to line")
     if abs(np.sign(np.diff(readings)).sum()) != len(readings) - 1:
         raise InvalidInput("the readings must rise or fall from line to line: one reading has one voltage")
-    return lambda given: np.interp(given, voltages, readings)
+    return voltages, readings
 
 
 def _point(row: list[str], unit: str, line: int) -> tuple[float, float]:
@@ -56,6 +62,9 @@ def _point(row: list[str], unit: str, line: int) -> tuple[float, float]:
 
 BUFFER_DURATION: Final = 4.0
 """Time for which the driver keeps samples that nobody has read. [s]"""
+
+RESOLUTION: Final = 16
+"""Bits of the converter that a virtual rig takes, over the range of the input."""
 
 WIRINGS: Final = MappingProxyType(
     {"default": "DEFAULT", "differential": "DIFF", "referenced": "RSE", "non_referenced": "NRSE"}
@@ -118,6 +127,15 @@ class AnalogueInputEntry(ChannelEntry):
         _, *points = filter(str.strip, files[self.calibration].splitlines())
         shown = "; ".join(points) if len(points) <= _MAX_SHOWN_POINTS else f"{len(points)} points"
         return f"{self.calibration}, voltage and reading: {shown}"
+
+    def voltage(self, values: Floats, files: Mapping[str, str]) -> Floats:
+        """Voltage of the sensor at values in SI; beyond the points of a calibration that of the nearest. [V]"""
+        if self.calibration is None:
+            gain, offset = si_gain(self.gain or "", self.offset, unit=self.si_unit)
+            return (values - offset) / gain
+        voltages, readings = calibration_points(files[self.calibration], quantity=self.kind, unit=self.si_unit)
+        order = np.argsort(readings)
+        return np.interp(values, readings[order], voltages[order])
 
     def ranged(self, scale: SensorScale, *, sample_rate: float | None, calibration: str = "") -> Channel:
         """Channel with the range of sensor and input, and its calibration in words."""
@@ -203,6 +221,22 @@ class DaqmxAcquisitionEntry(AcquisitionEntry):
         number = int(key.partition("[")[2].partition("]")[0])
         channel = self.channels[number - 1]
         channel.scale({channel.calibration or "": text})
+
+    def chain(self, name: str, files: Mapping[str, str]) -> SensorScale:
+        """Reading of a channel by its true values: sensor, range and resolution of the input, and its scale."""
+        channel = next(each for each in self.channels if each.name == name)
+        scale, most = channel.scale(files), channel.input_range
+        step = 2 * most / 2**RESOLUTION
+
+        def read(values: Floats) -> Floats:
+            volts = step * np.round(channel.voltage(values, files) / step)
+            return scale(np.clip(volts, -most, most))
+
+        return read
+
+    def open_reading(self, name: str, files: Mapping[str, str]) -> float:
+        """Reading of a channel whose sensor is broken: the upper end of its range, to which amplifiers go then."""
+        return self.new_device(files).channels[name].highest
 
     def new_device(self, files: Mapping[str, str]) -> Acquisition:
         """Inputs, not connected."""

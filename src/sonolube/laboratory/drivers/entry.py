@@ -1,14 +1,16 @@
 """Sections of a device map, of which every driver has its own: bases that refuse unknown keys; limits of outputs."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import date
-from math import inf
+from math import inf, nan
 from typing import Annotated, Any, ClassVar, Final, Literal, Self
 
+import numpy as np
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
+from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.facts.protocol.quantity_text import SiText, Table
 from sonolube.laboratory.block import CHANNEL_QUANTITIES, Channel, Sensor, quantity_of
@@ -157,7 +159,7 @@ class ChannelEntry(Table):
     calibrated : str
         Date of its latest calibration, such as 2026-03-01.
     uncertainty : str or None
-        Standard uncertainty of a reading, such as 0.05 N.
+        Standard uncertainty of a reading, such as 0.05 N, by which a virtual rig deviates in a run.
     """
 
     quantity: Name | None = None
@@ -303,6 +305,15 @@ class AcquisitionEntry(DriverEntry):
 
     def check_file(self, key: str, text: str) -> None:
         """Raise InvalidInput where the text of a file beside the map is not what its key needs."""
+
+    def chain(self, name: str, files: Mapping[str, str]) -> Callable[[Floats], Floats]:
+        """Reading of a channel by its true values, in SI, through sensor and input: here within the range alone."""
+        channel = self.new_device(files).channels[name]
+        return lambda values: np.clip(values, channel.lowest, channel.highest)
+
+    def open_reading(self, name: str, files: Mapping[str, str]) -> float:
+        """Reading of a channel whose sensor is broken, in SI; NaN where the device says so."""
+        return nan
 
     @abstractmethod
     def new_device(self, files: Mapping[str, str]) -> Acquisition:

@@ -111,7 +111,15 @@ class RunRecorder:
         self._begin(RawPart(channels=tuple(channels), sample_rate=sample_rate, begun=self._clock.now()))
 
     def begin_beside(
-        self, clock: str, channels: Sequence[Channel], *, sample_rate: float, first: int, ago: float, uncertainty: float
+        self,
+        clock: str,
+        channels: Sequence[Channel],
+        *,
+        sample_rate: float,
+        first: int,
+        ago: float,
+        uncertainty: float,
+        offset: float | None = None,
     ) -> None:
         """Begin a part whose samples another clock times, beside the one that is being recorded.
 
@@ -128,6 +136,8 @@ class RunRecorder:
             Time since that sample, in s.
         uncertainty : float
             Of that time, in s.
+        offset : float, optional
+            Of that sample from the first of the part of the run, where virtual devices tell it in place of `ago`, in s.
 
         Raises
         ------
@@ -138,7 +148,7 @@ class RunRecorder:
         main = self._open.get("")
         if main is None or clock in self._open or not CLOCK_NAME.fullmatch(clock):
             raise InvalidInput(f"a part of the clock {clock!r} needs one of the run, and no other of its own")
-        begun = self._clock.now() - ago
+        begun = self._clock.now() - ago if offset is None else main.part.begun + offset
         offset = begun - main.part.begun
         told = PartClock(name=clock, part=main.number, offset=offset, uncertainty=uncertainty, first_sample=first)
         self._begin(RawPart(channels=tuple(channels), sample_rate=sample_rate, begun=begun, clock=told))

@@ -1,4 +1,5 @@
 from .disturbances import UNDISTURBED as UNDISTURBED, Disturbances as Disturbances
+from .pace import ExpectedTime as ExpectedTime, expected_time as expected_time
 from .tribometer import (
     GROOVE_DIAMETER as GROOVE_DIAMETER,
     VirtualTribometer as VirtualTribometer,

@@ -1,7 +1,9 @@
 """Virtual rig: what its channels read over time, as motor and drive are set between blocks."""
 
-from collections.abc import Mapping, Sequence
-from math import pi
+from collections.abc import Callable, Mapping, Sequence
+from copy import copy
+from dataclasses import dataclass
+from math import ceil, pi
 from time import monotonic, sleep
 from typing import TYPE_CHECKING, Final
 
@@ -16,7 +18,6 @@ from sonolube.laboratory.virtual_tribometer.disturbances import Disturbances
 from sonolube.laboratory.virtual_tribometer.signals import (
     Approach,
     Bursts,
-    ColouredNoise,
     StickSlip,
     arm_resonance,
     correlated,
@@ -25,6 +26,7 @@ from sonolube.laboratory.virtual_tribometer.signals import (
     pulled,
     resonant,
 )
+from sonolube.laboratory.virtual_tribometer.streams import OutputDistortion, Source, Stream
 from sonolube.laboratory.virtual_tribometer.truth import FrictionDraw, Temperatures, TruthSetting, truth_dataset
 from sonolube.models.dynamics.structure import electrical_admittance
 from sonolube.rig import Rig
@@ -50,6 +52,11 @@ _DISPLACEMENT: Final = 12
 _GAUGE_RANGE: Final = 60.0  # N, that the gauge has at least
 _DISPLACEMENT_RANGE: Final = 1e-3  # m
 _STANDS: Final = 1e-9  # 1/s
+_JUMP: Final = 1.0  # s, in which other clocks are sampled while an operator works at the rig
+_SPEED_NOISE: Final = 1e-3  # of the speed, of a tachometer
+_VELOCITY_NOISE: Final = 1e-3  # m/s, of a vibrometer
+_AMPLITUDE_NOISE: Final = 1e-8  # m, likewise
+_SLACK: Final = 1e-6  # of a sample, for rounding
 
 
 class VirtualRig:
@@ -86,14 +93,17 @@ class VirtualRig:
         self._bursts = Bursts(np.random.default_rng(streams[_BURSTS]), disturbances.burst_duration)
         self._load, self._pull, self._pulled_from, self._zeroed = rig.normal_load, 0.0, 0.0, 0.0
         self._lifted_at, self._untouched = 0.0, 0.0  # m, distance at the latest change of load, and without contact
-        self._bent = 0.0  # m, of the holder by its play
         self._wobble_phases = phases.uniform(0, 1, 2)
         self._drift = float(disturbances.drift_rate * phases.standard_normal())
         self._generator_phase = float(phases.uniform())
-        self._time, self._epoch, self._rate, self._sample = 0.0, 0.0, 0.0, 0
+        self._time = 0.0
         self._began_at = 0.0  # on the wall clock
-        self._names: tuple[str, ...] = ()
+        self._main = Stream({name: Source(signal=name) for name in CHANNELS}, self._generator)
+        self._beside: list[tuple[Stream, Callable[[Floats], None]]] = []
+        self._due: list[tuple[float, Callable[[], None]]] = []
+        self._distortion = OutputDistortion()
         self._setting: DriveSetting | None = None
+        self._shown: DriveSetting | None = None  # with the factor of a distortion
         self._level = friction.at(None, 0.0)
         self._turning = Approach(0.0, 0.0, 0.0, disturbances.motor_time)
         self._revolutions, self._began_to_slide, self._volume = 0.0, 0.0, 0.0
@@ -104,10 +114,48 @@ class VirtualRig:
         self._admittances: dict[float, complex] = {}
         held = None if rig.structure is None else arm_resonance(rig.structure)
         self._arm = held or (disturbances.natural_frequency, disturbances.holder_damping_ratio)
+        self._amplitude = Approach(0.0, 0.0, 0.0, disturbances.vibration_time)
+        self._shows_vibration = False
         self._stick_slip = self._sticking(0.0)
-        self._gauge = 0.0
-        self._noises: dict[str, ColouredNoise] = {}
         self._settings: list[TruthSetting] = []
+        self._signals = self._by_name()
+
+    def _by_name(self) -> "Mapping[str, Callable[[_Reading], Floats]]":
+        """Readings of the rig by the signals of sources."""
+        return {
+            "friction_force": self._friction_force,
+            "normal_load": self._normal_load,
+            "voltage": self._voltage,
+            "voltage_peak_to_peak": self._monitor,
+            "current": self._current,
+            "current_peak": self._current_peak,
+            "current_rms": self._current_rms,
+            "temperature": self._temperature,
+            "gaussmeter": self._flux,
+            "displacement": self._displacement,
+            "rotation_speed": self._rotation_speed,
+            "vibration_amplitude": self._vibration_amplitude,
+            "surface_velocity": self._surface_velocity,
+            "surface_displacement": self._surface_displacement,
+            "rest": self._rest,
+        }
+
+    def trial(self) -> "VirtualRig":
+        """Copy that may be turned and sampled, and leaves the rig and its random numbers as they are."""
+        found = copy(self)
+        found._main = Stream(self._main.sources, self._main.generator)
+        found._bursts = Bursts(np.random.default_rng(self._streams[_BURSTS]), self._sizes.burst_duration)
+        found._temperatures = copy(self._temperatures)
+        found._settings, found._prepared, found._beside, found._due = [], [], [], []
+        found._real_time = False
+        found._signals = found._by_name()
+        return found
+
+    def _generator(self, channel: str, part: str) -> np.random.Generator:
+        """Random numbers of a channel of the rig's own acquisition; `part` is empty for the noise of the sensor."""
+        name = part or channel
+        number = _DISPLACEMENT if name == "displacement" else _NOISES.index(name)
+        return np.random.default_rng(self._streams[number])
 
     def truth(self) -> "xr.Dataset":
         """Truth of the recording, as `VirtualTribometer.truth`."""
@@ -127,41 +175,88 @@ class VirtualRig:
             self._settings, end_time=self._time, bursts=self._bursts, sizes=self._sizes, single=single, title=title
         )
 
+    def replace_main(self, stream: Stream) -> None:
+        """Sample another stream by `start` and `read`, in place of the rig's own."""
+        self._main = stream
+        self._shows_vibration |= stream.shows_vibration
+
     def start(self, names: Sequence[str], sample_rate: float) -> None:
         """Begin to sample."""
-        self._names, self._rate, self._sample, self._epoch = tuple(names), sample_rate, 0, self._time
+        self._begin(self._main, names, sample_rate)
         self._began_at = monotonic()
+
+    def start_beside(
+        self, stream: Stream, names: Sequence[str], sample_rate: float, take: Callable[[Floats], None]
+    ) -> None:
+        """Begin to sample another stream, whose samples are handed over as the time goes on."""
+        self.stop_beside(stream)
+        self._shows_vibration |= stream.shows_vibration
+        self._begin(stream, names, sample_rate)
+        self._beside.append((stream, take))
+
+    def stop_beside(self, stream: Stream) -> None:
+        """End to sample another stream."""
+        self._beside = [each for each in self._beside if each[0] is not stream]
+
+    def _begin(self, stream: Stream, names: Sequence[str], sample_rate: float) -> None:
+        """Begin to sample a stream."""
         sizes = self._sizes
         feedback = {
             "friction noise": correlated(time_constant=sizes.noise_time, sample_rate=sample_rate),
             "ringing": resonant(frequency=self._arm[0], damping_ratio=self._arm[1], sample_rate=sample_rate),
         }
-        streams = [*self._streams[: len(_NOISES) - 1], self._streams[_DISPLACEMENT]]
-        for kind, stream in zip(_NOISES, streams, strict=True):
-            former = self._noises.get(kind)
-            source = np.random.default_rng(stream) if former is None else former.generator
-            self._noises[kind] = ColouredNoise(source, feedback.get(kind, (0.0, 0.0)))
+        stream.start(names, rate=sample_rate, time=self._time, feedback=feedback)
 
     def stop(self) -> None:
         """End to sample."""
-        self._rate = 0.0
+        self._main.rate = 0.0
 
     def clock(self) -> float:
         """Time of the devices, by the samples and the prompts. [s]"""
         return self._time
 
+    def at(self, time: float, act: Callable[[], None]) -> None:
+        """Act at a time, before the first block that begins there or later; at once where that has passed. [s]"""
+        if time <= self._time:
+            act()
+        else:
+            self._due.append((time, act))
+
     def read(self, samples: int) -> Block:
         """Next samples."""
-        if not self._rate:
+        stream = self._main
+        if not stream.rate:
             raise DeviceError("virtual acquisition: nothing is sampled; call start first")
-        first = self._sample
-        time = self._epoch + (first + np.arange(samples)) / self._rate
-        self._sample = first + samples
-        self._time = self._epoch + self._sample / self._rate
-        values = self._values(time)
+        self._act_if_due()
+        first = stream.sample
+        time = stream.next_times(samples)
+        self._time = stream.epoch + stream.sample / stream.rate
+        values = self._values(time, stream)
+        self._catch_up()
         if self._real_time:
-            sleep(max(0.0, self._began_at + self._time - self._epoch - monotonic()))
-        return Block(first_sample=first, sample_rate=self._rate, values=values)
+            sleep(max(0.0, self._began_at + self._time - stream.epoch - monotonic()))
+        return Block(first_sample=first, sample_rate=stream.rate, values=values)
+
+    def _act_if_due(self) -> None:
+        """Do what was to be done by now."""
+        due, self._due = self._due, []
+        for time, act in due:
+            self.at(time, act)
+
+    def _catch_up(self) -> None:
+        """Hand over the samples of other streams until now."""
+        for stream, take in self._beside:
+            count = ceil((self._time - stream.epoch) * stream.rate - _SLACK) - stream.sample
+            if count > 0:
+                take(self._values(stream.next_times(count), stream))
+
+    def _pass(self, until: float) -> None:
+        """Let the time go on to a later one, while others than the main stream are sampled."""
+        while self._beside and self._time + _JUMP < until:
+            self._time += _JUMP
+            self._catch_up()
+        self._time = max(self._time, until)
+        self._catch_up()
 
     @property
     def channels(self) -> Mapping[str, Channel]:
@@ -203,7 +298,7 @@ class VirtualRig:
         """Pass the time of a prompt: the rig cools, the gauge is set to zero, load and pull change as it says."""
         self._volume_until_now()
         since = self._settings[-1].start_time if self._settings else self._time  # switched off then, and watched
-        self._time = max(self._time, since + PROMPT_DURATIONS[prompt.task])
+        self._pass(since + PROMPT_DURATIONS[prompt.task])
         if prompt.normal_load is not None:
             self._hang(prompt.normal_load)
         self._pull, self._pulled_from = prompt.applied_force or 0.0, self._time
@@ -224,18 +319,32 @@ class VirtualRig:
         self._setting = setting
         self._settle()
 
+    def distort(self, distortion: OutputDistortion) -> None:
+        """Have the output of the drive deviate from its setting from now on."""
+        self._distortion = distortion
+        self._settle()
+
+    @property
+    def distortion(self) -> OutputDistortion:
+        """Deviation of the output of the drive from its setting."""
+        return self._distortion
+
     def _settle(self) -> None:
         """Set the friction of the present setting."""
         speed = self._turning.target * pi * self._diameter
         self._volume_until_now()
-        self._level = self._friction.at(self._setting, speed, normal_load=self._load)
+        self._shown, vibrating = self._distortion.applied(self._setting), self._distortion.vibrating(self._setting)
+        self._level = self._friction.at(vibrating, speed, normal_load=self._load)
         self._ratio = self._ratio.towards(self._level.friction_ratio, time=self._time)
+        if self._shows_vibration:
+            amplitude = self._friction.amplitude(vibrating, speed, normal_load=self._load)
+            self._amplitude = self._amplitude.towards(amplitude, time=self._time)
         self._stick_slip = self._sticking(speed)
         flash = self._temperatures.set(
-            self._time, setting=self._setting, friction_force=self._level.friction_force, sliding_speed=speed
+            self._time, setting=vibrating, friction_force=self._level.friction_force, sliding_speed=speed
         )
         self._settings.append(
-            TruthSetting(self._time, speed, self._setting, self._level, flash, self._load, self._stick_slip)
+            TruthSetting(self._time, speed, vibrating, self._level, flash, self._load, self._stick_slip)
         )
 
     def _sticking(self, sliding_speed: float) -> StickSlip:
@@ -269,26 +378,15 @@ class VirtualRig:
         """Sliding distance until times. [m]"""
         return self._turned(time) * pi * self._diameter
 
-    def _values(self, time: Floats) -> Floats:
-        """Samples of all channels at times."""
-        wobble, sizes = self._wobble(time), self._sizes
-        of_name = {
-            "friction_force": lambda: self._friction_force(time, wobble),
-            "normal_load": lambda: self._load * wobble + self._white("normal_load", sizes.sensor_noise, time),
-            "voltage": lambda: self._voltage(time),
-            "voltage_peak_to_peak": lambda: self._monitor(time),
-            "current": lambda: self._current(time),
-            "temperature": lambda: (
-                self._temperatures.reading(time) + self._white("temperature", sizes.temperature_noise, time)
-            ),
-            "gaussmeter": lambda: self._flux(time),
-            "displacement": lambda: self._displacement(time, wobble),
-        }
-        return np.stack([of_name[name]() for name in self._names], axis=1)
-
-    def _white(self, name: str, deviation: float, time: Floats) -> Floats:
-        """White noise of a channel."""
-        return deviation * self._noises[name].next(time.size)
+    def _values(self, time: Floats, stream: Stream) -> Floats:
+        """Samples of the chosen channels of a stream at times, through their sensors."""
+        wobble = self._wobble(time)
+        found = []
+        for name in stream.names:
+            source = stream.sources[name]
+            signal = self._signals[source.signal](_Reading(time, wobble, stream, name, source))
+            found.append(source.reading(np.asarray(signal, dtype=np.float64)))
+        return np.stack(found, axis=1)
 
     def _wobble(self, time: Floats) -> Floats:
         """Load over its mean by the run-out of the disc. []"""
@@ -299,74 +397,138 @@ class VirtualRig:
             + self._sizes.wobble_2 * np.cos(4 * np.pi * (turned + second))
         )
 
-    def _friction_force(self, time: Floats, wobble: Floats) -> Floats:
+    def _friction_force(self, at: "_Reading") -> Floats:
         """Reading of the force gauge."""
-        sizes = self._sizes
+        sizes, time = self._sizes, at.time
         mean = self._friction.friction_coefficient * self._load
         distance = self._distance(time)
         ratio = self._ratio.at(time)
         run_in = np.exp(-(distance - self._untouched) / sizes.run_in_distance)
-        level = mean * wobble * ratio * (1 + sizes.run_in_share * run_in)
-        noise = sizes.friction_noise * self._noises["friction noise"].next(time.size)
-        force = level * (1 + noise + sizes.ringing * self._noises["ringing"].next(time.size))
-        if self._setting is None and self._stick_slip.occurs:
+        level = mean * at.wobble * ratio * (1 + sizes.run_in_share * run_in)
+        noise = sizes.friction_noise * at.noise("friction noise")
+        force = level * (1 + noise + sizes.ringing * at.noise("ringing"))
+        if self._shown is None and self._stick_slip.occurs:
             slips = self._stick_slip.force(time - self._turning.start)
             force += np.where(self._bursts.are_on(time), slips, 0.0) if self._stick_slip.comes_in_bursts else slips
         turning = self._turning.at(time)
         drawn = sizes.holder_stiffness * (distance - self._began_to_slide)  # while the pin still sticks
         force = np.where(drawn < (1 + sizes.static_share) * level, drawn, force) * (turning / (turning + _STANDS))
         force = force + pulled(since=time - self._pulled_from, greatest=self._pull)
-        reading = force + self._drift * (time - self._zeroed) + self._white("friction_force", sizes.sensor_noise, time)
-        if sizes.hysteresis > 0:
-            reading = play(reading, sizes.hysteresis, self._gauge)
-            self._gauge = float(reading[-1])
-        return np.asarray(reading)
+        reading = force + self._drift * (time - self._zeroed) + sizes.sensor_noise * at.noise()
+        return at.with_play(reading, sizes.hysteresis)
 
-    def _displacement(self, time: Floats, wobble: Floats) -> Floats:
+    def _normal_load(self, at: "_Reading") -> Floats:
+        """Load, with its wobble."""
+        return np.asarray(self._load * at.wobble + self._sizes.sensor_noise * at.noise())
+
+    def _temperature(self, at: "_Reading") -> Floats:
+        """Reading of a thermocouple."""
+        reading = self._temperatures.reading(at.time, contact_share=at.source.contact_share)
+        return np.asarray(reading + self._sizes.temperature_noise * at.noise())
+
+    def _rotation_speed(self, at: "_Reading") -> Floats:
+        """Reading of a tachometer."""
+        turning = self._turning.at(at.time)
+        return np.asarray(turning * (1 + _SPEED_NOISE * at.noise()))
+
+    def _vibration_amplitude(self, at: "_Reading") -> Floats:
+        """Amplitude of the contact, zero to peak, as a vibrometer with a lock-in reads it."""
+        return np.asarray(self._amplitude.at(at.time) + _AMPLITUDE_NOISE * at.noise())
+
+    def _surface_velocity(self, at: "_Reading") -> Floats:
+        """Velocity of the contact at the fundamental of the drive, as a vibrometer reads it."""
+        noise = _VELOCITY_NOISE * at.noise()
+        if self._shown is None:
+            return noise
+        angular = 2 * pi * self._shown.frequency
+        return np.asarray(noise + angular * self._swing(at) * np.cos(2 * pi * self._phase(at.time, self._shown)))
+
+    def _surface_displacement(self, at: "_Reading") -> Floats:
+        """Displacement of the contact at the fundamental of the drive, as a vibrometer reads it."""
+        noise = _AMPLITUDE_NOISE * at.noise()
+        if self._shown is None:
+            return noise
+        return np.asarray(noise + self._swing(at) * np.sin(2 * pi * self._phase(at.time, self._shown)))
+
+    def _swing(self, at: "_Reading") -> Floats:
+        """Amplitude of the contact over time."""
+        mean = self._distortion.mean_envelope
+        return np.asarray(self._amplitude.at(at.time) * self._distortion.envelope(at.time) / mean)
+
+    def _rest(self, at: "_Reading") -> Floats:
+        """Rest value of a channel that the rig does not simulate."""
+        return np.asarray(at.source.rest + at.source.noise * at.noise())
+
+    def _displacement(self, at: "_Reading") -> Floats:
         """Deflection of the holder by the force along the sliding, with play. [m]"""
-        sizes = self._sizes
+        sizes, time = self._sizes, at.time
         ratio = self._ratio.at(time)
         turning = self._turning.at(time)
-        friction = self._friction.friction_coefficient * self._load * wobble * ratio * turning / (turning + _STANDS)
+        friction = self._friction.friction_coefficient * self._load * at.wobble * ratio * turning / (turning + _STANDS)
         bent = (friction + pulled(since=time - self._pulled_from, greatest=self._pull)) / sizes.deflected_stiffness
-        if sizes.deflection_play > 0:
-            bent = play(bent, sizes.deflection_play, self._bent)
-            self._bent = float(bent[-1])
-        return np.asarray(bent + self._white("displacement", sizes.displacement_noise, time))
+        return at.with_play(bent, sizes.deflection_play) + sizes.displacement_noise * at.noise()
 
     def _phase(self, time: Floats, setting: DriveSetting) -> Floats:
         """Phase of the generator, whose clock is not that of the acquisition, in periods."""
         return setting.frequency * (1 + self._sizes.clock_error) * time + self._generator_phase
 
-    def _voltage(self, time: Floats) -> Floats:
+    def _voltage(self, at: "_Reading") -> Floats:
         """Voltage at the actuator."""
-        noise = self._white("voltage", 1.0, time)
-        setting = self._setting
+        noise, setting = at.noise(), self._shown
         if setting is None:
             return self._sizes.voltage_noise * noise
         half = setting.voltage_peak_to_peak / 2
-        wave = setting.wave(self._phase(time, setting))
+        wave = setting.wave(self._phase(at.time, setting)) * self._distortion.envelope(at.time)
+        if self._distortion.second_share:
+            wave = wave + self._distortion.second(at.time)
         return setting.voltage_offset + half * (wave + self._sizes.voltage_noise * noise)
 
-    def _monitor(self, time: Floats) -> Floats:
+    def _monitor(self, at: "_Reading") -> Floats:
         """Peak-to-peak voltage by the monitor of the amplifier."""
-        voltage = 0.0 if self._setting is None else self._setting.voltage_peak_to_peak
-        return voltage + self._sizes.voltage_noise * max(voltage, 1.0) * self._white("voltage_peak_to_peak", 1.0, time)
+        voltage = 0.0 if self._shown is None else self._shown.voltage_peak_to_peak
+        swing = voltage * (self._distortion.envelope(at.time) + self._distortion.second_share)
+        return np.asarray(swing + self._sizes.voltage_noise * max(voltage, 1.0) * at.noise())
 
-    def _current(self, time: Floats) -> Floats:
+    def _current(self, at: "_Reading") -> Floats:
         """Current into the actuator: by the admittance of its structure for a sine, else into its capacitance."""
-        noise = self._white("current", self._sizes.current_noise, time)
-        setting, capacitance = self._setting, self._capacitance
+        noise = self._sizes.current_noise * at.noise()
+        setting, capacitance = self._shown, self._capacitance
         if setting is None or capacitance is None:
             return noise
+        time, envelope = at.time, self._distortion.envelope(at.time)
         admittance = self._admittance(setting.frequency)
         if admittance is not None and setting.waveform == "sine":
             lead = float(np.angle(admittance)) / (2 * pi)
-            wave = setting.wave(self._phase(time, setting) + lead)
+            wave = setting.wave(self._phase(time, setting) + lead) * envelope
             return np.asarray(noise + abs(admittance) * setting.voltage_peak_to_peak / 2 * wave)
         step = 1 / (400 * setting.frequency)
         before, after = (setting.wave(self._phase(time + shift, setting)) for shift in (-step / 2, step / 2))
-        return noise + capacitance * setting.voltage_peak_to_peak / 2 * (after - before) / step
+        return noise + capacitance * setting.voltage_peak_to_peak / 2 * (after - before) / step * envelope
+
+    def _current_peak(self, at: "_Reading") -> Floats:
+        """Peak of the current, as a peak meter reads it."""
+        return self._current_level(at, lambda wave: float(np.abs(wave).max()))
+
+    def _current_rms(self, at: "_Reading") -> Floats:
+        """Root mean square of the current, as an rms meter reads it."""
+        return self._current_level(at, lambda wave: float(np.sqrt(np.mean(wave**2))))
+
+    def _current_level(self, at: "_Reading", level: Callable[[Floats], float]) -> Floats:
+        """Level of the current by one period of it."""
+        noise = self._sizes.current_noise * at.noise()
+        setting, capacitance = self._shown, self._capacitance
+        if setting is None or capacitance is None:
+            return noise
+        admittance = self._admittance(setting.frequency)
+        phase = (np.arange(_PERIOD) + 0.5) / _PERIOD
+        if admittance is not None and setting.waveform == "sine":
+            wave = abs(admittance) * np.sin(2 * pi * phase)
+        else:
+            step = 1 / 400
+            slope = (setting.wave(phase + step / 2) - setting.wave(phase - step / 2)) / step
+            wave = capacitance * setting.frequency * slope
+        found = level(wave) * setting.voltage_peak_to_peak / 2
+        return np.asarray(noise + found * self._distortion.envelope(at.time))
 
     def _admittance(self, frequency: float) -> complex | None:
         """Admittance of the actuator in its structure; None where the rig has no stack in one. [S]"""
@@ -377,7 +539,32 @@ class VirtualRig:
             self._admittances[frequency] = complex(found[0])
         return self._admittances[frequency]
 
-    def _flux(self, time: Floats) -> Floats:
+    def _flux(self, at: "_Reading") -> Floats:
         """Reading of the Hall probe."""
-        pulses = hall_pulses(revolutions=self._turned(time), magnets=self._sizes.magnets)
-        return _PULSE * (pulses + self._white("gaussmeter", self._sizes.flux_noise, time))
+        pulses = hall_pulses(revolutions=self._turned(at.time), magnets=self._sizes.magnets)
+        return np.asarray(_PULSE * (pulses + self._sizes.flux_noise * at.noise()))
+
+
+_PERIOD: Final = 4000  # points of one period, of which a level is taken
+
+
+@dataclass(frozen=True, slots=True)
+class _Reading:
+    """Times at which a channel of a stream is read, and the load over its mean there."""
+
+    time: Floats
+    wobble: Floats
+    stream: Stream
+    name: str
+    source: Source
+
+    def noise(self, part: str = "") -> Floats:
+        """Next noise of unit variance; that of the sensor, or another part."""
+        return self.stream.noise(self.name, part, self.time.size)
+
+    def with_play(self, values: Floats, half_width: float) -> Floats:
+        """Values behind the play of the sensor."""
+        if half_width > 0:
+            values = play(values, half_width, self.stream.played.get(self.name, 0.0))
+            self.stream.played[self.name] = float(values[-1])
+        return np.asarray(values)

@@ -3,10 +3,12 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
+from sonolube.facts.protocol import Protocol
 from sonolube.laboratory.block import Block, Channel
 from sonolube.laboratory.devices import DeviceError, Devices, DriveSetting
 from sonolube.laboratory.heating_assumptions import HeatingAssumptions
 from sonolube.laboratory.virtual_tribometer.disturbances import Disturbances
+from sonolube.laboratory.virtual_tribometer.pace import ExpectedTime, expected_time
 from sonolube.laboratory.virtual_tribometer.simulation import CHANNELS, VOLTAGE_MAXIMUM, VirtualRig
 from sonolube.rig import Rig
 from sonolube.text.units import format_si
@@ -66,7 +68,7 @@ class VirtualTribometer:
     """A virtual rig with its devices; made by `virtual_tribometer`."""
 
     def __init__(self, virtual: VirtualRig, description: Mapping[str, str], groove_diameter: float) -> None:
-        self._virtual = virtual
+        self._virtual, self._diameter = virtual, groove_diameter
         self.devices = Devices(
             acquisition=_Acquisition(virtual),
             drive=_Drive(virtual),
@@ -78,6 +80,19 @@ class VirtualTribometer:
             attend=virtual.attend,
             clock=virtual.clock,
         )
+
+    def expected_time(self, protocol: Protocol) -> ExpectedTime:
+        """Time that a protocol is expected to take, by a few blocks and set points.
+
+        Parameters
+        ----------
+        protocol : Protocol
+
+        Returns
+        -------
+        ExpectedTime
+        """
+        return expected_time(self._virtual, protocol, channels=CHANNELS, groove_diameter=self._diameter)
 
     def truth(self) -> "xr.Dataset":
         """Truth of the recording: friction of each setting, worn in, and every size that was drawn.

@@ -117,6 +117,13 @@ class FrictionDraw:
             known[voltage] = self._between(known, voltage) or self._computed(setting, sliding_speed, load)
         return known[voltage]
 
+    def amplitude(self, setting: DriveSetting | None, sliding_speed: float, *, normal_load: float) -> float:
+        """Vibration amplitude, zero to peak; at rest or without load that at speed and load of the rig. [m]"""
+        if setting is None:
+            return 0.0
+        speed, load = sliding_speed or self._rig.sliding_speed, normal_load or self._rig.normal_load
+        return self.at(setting, speed, normal_load=load).vibration_amplitude
+
     def _between(self, known: dict[float, FrictionLevel], voltage: float) -> FrictionLevel | None:
         """Level between two known voltages that are close; None without them."""
         voltages = sorted(known)
@@ -202,11 +209,12 @@ class Temperatures:
         self._flash = self._flash.towards(0.0 if np.isnan(flash) else flash, time=time)
         return flash
 
-    def reading(self, time: Floats) -> Floats:
-        """Temperature that the thermocouple reads. [K]"""
-        rise = (1 - self._share) * self._actuator.at(time)
-        if self._share:
-            rise = rise + self._share * (self._pin.at(time) + self._flash.at(time))
+    def reading(self, time: Floats, *, contact_share: float | None = None) -> Floats:
+        """Temperature that the thermocouple reads, or one at another place. [K]"""
+        share = self._share if contact_share is None else contact_share
+        rise = (1 - share) * self._actuator.at(time)
+        if share:
+            rise = rise + share * (self._pin.at(time) + self._flash.at(time))
         return np.asarray(self._assumed.ambient_temperature + rise)
 
     def rises(self, time: float) -> tuple[float, float]:

@@ -1,16 +1,18 @@
 """Rotation of a disc from the pulses of magnets at its rim, and friction force from the current of its motor."""
 
 from dataclasses import dataclass
+from math import sqrt
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy import stats
 from scipy.interpolate import PchipInterpolator
 from scipy.signal import find_peaks
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive, require_within
 from sonolube.errors import InvalidInput
 from sonolube.facts.metrics import friction_from_current, linear_speed
-from sonolube.measurement.statistics.autocorrelation import correlated_mean
 from sonolube.measurement.time_series import require_time_series
 
 _MULTIPLE_TOLERANCE = 0.25  # relative deviation of an interval with missing pulses from a multiple of its neighbours
@@ -36,7 +38,7 @@ class DiscRotation:
     mean_rotation_speed : float
         Revolutions over time from the first to the last pulse, in 1/s.
     rotation_speed_uncertainty : float
-        Standard error of the mean over the revolutions; 0 for a single one. [1/s]
+        Standard uncertainty of that mean, by the times of its two pulses and the clock of the recording. [1/s]
     """
 
     time: Floats
@@ -92,8 +94,17 @@ def _parabola_vertices(t: Floats, b: Floats, peaks: NDArray[np.int64]) -> Floats
     return np.asarray(t[peaks] + shift)
 
 
-def disc_rotation(*, time: ArrayLike, groove_diameter: float, magnets: int = 1) -> DiscRotation:
-    """Rotation of a disc from its pulse times, with missing pulses interpolated.
+_MIN_SECOND: Final = 2  # second differences that tell a scatter
+_CORRELATED: Final = 1 + 2 * ((2 / 3) ** 2 + (1 / 6) ** 2)  # of them over independent ones, by their correlations
+
+CLOCK_UNCERTAINTY: Final = 5e-5 / sqrt(3)
+"""Relative standard uncertainty of the clock of a recording: within 50 parts in a million, as makers of cards state."""
+
+
+def disc_rotation(
+    *, time: ArrayLike, groove_diameter: float, magnets: int = 1, sample_interval: float = 0.0
+) -> DiscRotation:
+    r"""Rotation of a disc from its pulse times, with missing pulses interpolated.
 
     Parameters
     ----------
@@ -103,6 +114,8 @@ def disc_rotation(*, time: ArrayLike, groove_diameter: float, magnets: int = 1) 
         Diameter of the wear track under the pin. [m]
     magnets : int
         Number of magnets at the rim; they need not be equal in strength or spacing.
+    sample_interval : float
+        Between samples of the probe; 0 where it is not known. [s]
 
     Returns
     -------
@@ -121,12 +134,22 @@ def disc_rotation(*, time: ArrayLike, groove_diameter: float, magnets: int = 1) 
     fractions has missing pulses. Each revolution is timed from a magnet to the same magnet, so that unequal spacing has
     no effect.
 
+    The mean over N revolutions in the time T depends on the first and the last pulse alone, so that its uncertainty is
+
+    .. math:: u_n = \frac{N}{T} \sqrt{\frac{2 u_t^2}{T^2} + u_c^2} ,
+
+    with that of the clock, :math:`u_c`, and that of the time of a pulse, :math:`u_t`: of second differences of pulses
+    of one magnet the mean square is :math:`6 u_t^2` at steady speed, which Student's factor widens where they are few.
+    It is at least that of a count, the sample interval over :math:`\sqrt{12}`, and that alone where no magnet has
+    passed four times.
+
     References
     ----------
     .. [1] D 4.1.1 and appendix A 2.1.8.
     """
     t = require_finite(time=time)
     require_positive(groove_diameter=groove_diameter)
+    require_non_negative(sample_interval=sample_interval)
     if magnets < 1:
         raise InvalidInput(f"magnets must be positive, got {magnets}")
     if t.ndim != 1 or t.size < magnets + 1:
@@ -137,15 +160,30 @@ def disc_rotation(*, time: ArrayLike, groove_diameter: float, magnets: int = 1) 
     times, interpolated = _with_missing_pulses(t, steps, fractions)
     position = np.concatenate([[0.0], np.cumsum(np.resize(fractions, times.size - 1))])
     speed = 1 / (times[magnets:] - times[:-magnets])
+    lasts = float(times[-1] - times[0])
+    mean, pulse = float(position[-1]) / lasts, _pulse_uncertainty(times, interpolated, magnets, sample_interval)
     return DiscRotation(
         time=times,
         revolutions=position,
         interpolated=interpolated,
         rotation_speed=speed,
         sliding_speed=linear_speed(rotation_speed=speed, groove_diameter=groove_diameter),
-        mean_rotation_speed=float(position[-1] / (times[-1] - times[0])),
-        rotation_speed_uncertainty=correlated_mean(speed).uncertainty if speed.size > 1 else 0.0,
+        mean_rotation_speed=mean,
+        rotation_speed_uncertainty=mean * sqrt(2 * (pulse / lasts) ** 2 + CLOCK_UNCERTAINTY**2),
     )
+
+
+def _pulse_uncertainty(times: Floats, interpolated: NDArray[np.bool_], magnets: int, sample_interval: float) -> float:
+    """Standard uncertainty of the time of a pulse, by second differences over whole turns and the samples. [s]"""
+    known = np.where(interpolated, np.nan, times)
+    second = known[2 * magnets :] - 2 * known[magnets:-magnets] + known[: -2 * magnets]
+    second = second[np.isfinite(second)]
+    scatter = 0.0
+    if second.size >= _MIN_SECOND:
+        freedom = second.size / _CORRELATED
+        few = float(stats.t.ppf(0.975, freedom) / stats.norm.ppf(0.975))
+        scatter = few * sqrt(float(np.mean(second**2)) / 6)
+    return max(scatter, sample_interval / sqrt(12))
 
 
 def _steps_of_one_magnet(t: Floats) -> NDArray[np.int64]:

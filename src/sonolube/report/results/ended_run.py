@@ -8,6 +8,8 @@ from sonolube.facts.protocol import Protocol
 from sonolube.laboratory import RunState, verdict_text
 from sonolube.laboratory.dry_run import DryRun, dry_run_cells, dry_run_lines, dry_run_sums
 from sonolube.laboratory.records import Observation, Run
+from sonolube.laboratory.rehearsal import Rehearsal
+from sonolube.laboratory.virtual_tribometer import ExpectedTime
 from sonolube.operating_system import quoted
 from sonolube.report.blocks import Block, Rows, Table, Verbatim
 from sonolube.report.results.record_object import picked
@@ -104,6 +106,20 @@ def _end(result: RunState, run: Run) -> tuple[str, str]:
     return (result.outcome, result.reason) if lacks_end else (summary.outcome, summary.reason)
 
 
+def rehearsed_blocks(rehearsed: Rehearsal) -> list[Block]:
+    """What each channel of a map reads on the virtual rig."""
+    return ["channels of the map on the virtual rig", Rows([(each.name, each.told) for each in rehearsed.channels])]
+
+
+def rehearsed_object(rehearsed: Rehearsal) -> dict[str, Any]:
+    """What each channel of a map reads on the virtual rig, whether that is simulated, and the faults, for JSON."""
+    channels = {
+        each.name: {"clock": each.clock, "reads": each.reads, "simulated": each.is_simulated}
+        for each in rehearsed.channels
+    }
+    return {"virtual_channels": channels, "faults": [fault.described for fault in rehearsed.faults]}
+
+
 def run_caveats(run: Run, rig: Rig | None) -> list[str]:
     """Caveats of the record of a virtual run, and settings in which the protocol overrules the rig file."""
     found = [*run.caveats]
@@ -125,17 +141,19 @@ def _mean_friction(run: Run) -> float | None:
     return float(recording["friction_force"].mean()) if "friction_force" in recording else None
 
 
-def dry_run_blocks(protocol: Protocol, found: DryRun) -> list[Block]:
+def dry_run_blocks(protocol: Protocol, found: DryRun, *, expected: ExpectedTime | None = None) -> list[Block]:
     """A row a set point, then time, data, drive and temperatures; what is impossible last."""
     points = [dry_run_cells(point, found) for point in found.points]
-    sums = Rows(list(dry_run_sums(found)))
+    virtual = () if expected is None else (("virtual run", expected.text),)
+    sums = Rows([*dry_run_sums(found), *virtual])
     refused = [f"  impossible: {each}" for each in found.refusals]
     return [protocol.title, Table(("",) * 4, points), sums, *refused]
 
 
-def dry_run_object(protocol: Protocol, found: DryRun) -> dict[str, Any]:
-    """Times, data and refusals, for JSON."""
+def dry_run_object(protocol: Protocol, found: DryRun, *, expected: ExpectedTime | None = None) -> dict[str, Any]:
+    """Times, data and refusals, for JSON; the expected time, which no two runs have alike, is a text."""
     return {
+        **({} if expected is None else {"virtual_run": expected.text}),
         "title": protocol.title,
         "possible": not found.refusals,
         "refusals": list(found.refusals),

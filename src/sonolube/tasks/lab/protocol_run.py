@@ -14,12 +14,20 @@ from sonolube.errors import InvalidInput
 from sonolube.facts.protocol import Protocol, flattened, protocol_at, protocol_by_name_or_file
 from sonolube.laboratory import RunControl, RunState, RunWatcher, exit_code, run_protocol
 from sonolube.laboratory.devices import Devices
+from sonolube.laboratory.drivers import read_device_map, unfulfilled
 from sonolube.laboratory.dry_run import DryRun, dry_run_chart
 from sonolube.laboratory.records import Run, export_run, read_run
+from sonolube.laboratory.rehearsal import Rehearsal, rehearsal
 from sonolube.laboratory.run_plan import RunRequest, begin_record, planned_run, require_free
 from sonolube.laboratory.runner import Operator
 from sonolube.laboratory.switch_off import ready_devices
-from sonolube.laboratory.virtual_tribometer import GROOVE_DIAMETER, Disturbances, VirtualTribometer, virtual_tribometer
+from sonolube.laboratory.virtual_tribometer import (
+    GROOVE_DIAMETER,
+    Disturbances,
+    ExpectedTime,
+    VirtualTribometer,
+    virtual_tribometer,
+)
 from sonolube.laboratory.watching import told
 from sonolube.report import Drawing
 from sonolube.report.results import ended_run as results
@@ -53,24 +61,31 @@ class RunAnswer(Answer):
         Read back from its folder.
     simulated : bool
     rig : Rig or None
+    rehearsed : Rehearsal or None
+        Devices of a device map on the virtual rig.
     """
 
     result: RunState
     run: Run
     simulated: bool
     rig: Rig | None = None
+    rehearsed: Rehearsal | None = None
 
     def blocks(self) -> Sequence[Block]:
-        """Outcome, what was recorded, and the next command."""
-        return results.run_blocks(self.result, self.run, simulated=self.simulated)
+        """Outcome, what was recorded, what each channel of a map reads, and the next command."""
+        reads = () if self.rehearsed is None else results.rehearsed_blocks(self.rehearsed)
+        head, rows, *after = results.run_blocks(self.result, self.run, simulated=self.simulated)
+        return [head, rows, *reads, *after]
 
     def object(self) -> dict[str, Any]:
-        """Outcome, folder and recordings."""
-        return results.run_object(self.result, self.run, simulated=self.simulated)
+        """Outcome, folder and recordings, and what each channel of a map reads."""
+        reads = {} if self.rehearsed is None else results.rehearsed_object(self.rehearsed)
+        return results.run_object(self.result, self.run, simulated=self.simulated) | reads
 
     def caveats(self) -> Sequence[str]:
-        """Caveats of the record."""
-        return results.run_caveats(self.run, self.rig) if self.simulated else self.run.caveats
+        """Caveats of the record, faults, and channels that are not simulated."""
+        found = results.run_caveats(self.run, self.rig) if self.simulated else self.run.caveats
+        return found if self.rehearsed is None else (*self.rehearsed.caveats, *found)
 
     def assumptions(self) -> Mapping[str, str]:
         """Assumptions of the rig file, where the friction is that of the rig."""
@@ -99,26 +114,34 @@ class DryRunAnswer(Answer):
     ----------
     protocol : Protocol
     found : DryRun
+    expected : ExpectedTime or None
+        On a virtual rig.
+    rehearsed : Rehearsal or None
+        Devices of a device map on the virtual rig.
     """
 
     protocol: Protocol
     found: DryRun
+    expected: ExpectedTime | None = None
+    rehearsed: Rehearsal | None = None
 
     def blocks(self) -> Sequence[Block]:
         """A row a set point, then time, data, drive and temperatures; what is impossible last."""
-        return results.dry_run_blocks(self.protocol, self.found)
+        reads = () if self.rehearsed is None else results.rehearsed_blocks(self.rehearsed)
+        return [*results.dry_run_blocks(self.protocol, self.found, expected=self.expected), *reads]
 
     def object(self) -> dict[str, Any]:
         """Times, data and refusals."""
-        return results.dry_run_object(self.protocol, self.found)
+        reads = {} if self.rehearsed is None else results.rehearsed_object(self.rehearsed)
+        return results.dry_run_object(self.protocol, self.found, expected=self.expected) | reads
 
     def figures(self) -> Mapping[str, Drawing]:
         """Speed, drive and temperatures over time."""
         return {"dry-run": Drawing(chart=lambda: dry_run_chart(self.found), forms=())}
 
     def caveats(self) -> Sequence[str]:
-        """Caveats of the plan."""
-        return self.found.caveats
+        """Faults, channels that are not simulated, and caveats of the plan."""
+        return self.found.caveats if self.rehearsed is None else (*self.rehearsed.caveats, *self.found.caveats)
 
     def assumptions(self) -> Mapping[str, str]:
         """Assumptions about drive and heat."""
@@ -152,7 +175,7 @@ def run_and_record(
     devices: Devices,
     *,
     out: Path,
-    virtual: VirtualTribometer | None = None,
+    virtual: VirtualTribometer | Rehearsal | None = None,
     operator: Operator | None = None,
     control: RunControl | None = None,
     watcher: RunWatcher | None = None,
@@ -167,7 +190,7 @@ def run_and_record(
     devices : Devices
     out : Path
         Folder of all runs.
-    virtual : VirtualTribometer, optional
+    virtual : VirtualTribometer or Rehearsal, optional
         Whose truth is kept too.
     operator : callable, optional
         Answers the prompts of a protocol on devices that are not simulated.
@@ -195,7 +218,7 @@ def run_and_record(
     require_free(devices.resources)
     recorder = begin_record(request, devices, limits, out=out, facts={} if self_test else {"self_test": "left out"})
     told(watcher, lambda each: each.records(recorder.folder))
-    with run_stage("running", control) as advance:
+    with run_stage(_running(protocol, virtual), control) as advance:
         result = run_protocol(
             protocol,
             devices,
@@ -208,7 +231,22 @@ def run_and_record(
         )
         if virtual is not None:
             recorder.store_truth(virtual.truth())
-    return RunAnswer(result=result, run=read_run(recorder.folder), simulated=devices.simulated, rig=request.rig)
+    return RunAnswer(
+        result=result,
+        run=read_run(recorder.folder),
+        simulated=devices.simulated,
+        rig=request.rig,
+        rehearsed=virtual if isinstance(virtual, Rehearsal) else None,
+    )
+
+
+def _running(protocol: Protocol, virtual: VirtualTribometer | Rehearsal | None) -> str:
+    """Title of a run, with the time that a virtual one is expected to take where that is long."""
+    if virtual is None:
+        return "running"
+    with stage("seeing how long it takes"):
+        said = virtual.expected_time(protocol).text_before_run
+    return f"running, {said}" if said else "running"
 
 
 @contextmanager
@@ -308,28 +346,58 @@ def virtual(
         InputFile | None,
         Parameter("Such as study_1, or a TOML file; map_test at load and speed of the rig.", "PROTOCOL"),
     ] = None,
+    device_map: Annotated[
+        InputFile | None,
+        File("Device map whose channels, clocks and limits the virtual rig has.", "MAP.toml", option="--device"),
+    ] = None,
+    fault: Annotated[
+        Sequence[str],
+        Parameter("Of the rig of a map, such as load_50_ohm, or overload_trip@2s; may come again.", "NAME"),
+    ] = (),
     seed: Annotated[int, Parameter("Of all that is drawn: another specimen, other noise.", lowest=0)] = 0,
     file_format: Annotated[
         Literal["netcdf", "tdms", "csv"], Parameter("Of the recording, beside netCDF.", option="--format")
     ] = "netcdf",
+    dry_run: Annotated[bool, Parameter("Tell what will happen and how long it takes, and record nothing.")] = False,
     out: AllRuns = RUNS,
     **watch: Unpack[Watched],
-) -> RunAnswer:
-    """Record a realistic test of a rig that exists in its file only.
+) -> RunAnswer | DryRunAnswer:
+    """Record a realistic test of a rig that exists in its file only, also with the devices of a map.
 
     Example: sonolube lab virtual examples/rigs/power_map.toml --protocol map_test
     """
+    if device_map is None:
+        refuse_unused("fault", because=f"without {shown('device_map')} MAP.toml, whose rig has it")
     known = rig_of(rig)
     path = _OWN_TEST if protocol is None else str(file_path(protocol))
     read = protocol_by_name_or_file(path)
     if protocol is None:
         read = protocol_at(read, normal_load=known.normal_load, sliding_speed=known.sliding_speed)
-    wanted = RunRequest(protocol=read, name=Path(path).stem, rig=known, seed=seed)
-    simulated = _virtual_rig(wanted)
+    file = None if device_map is None else file_path(device_map)
+    wanted = RunRequest(protocol=read, name=Path(path).stem, rig=known, device_file=file, seed=seed)
+    if dry_run:
+        refuse_unused("file_format", "out", because=f"with {shown('dry_run')}, which records nothing")
+    simulated = _virtual_rig(wanted) if file is None else _rehearsal(wanted, file, fault)
+    if dry_run:
+        return _planned(wanted, simulated, file)
     found = run_and_record(wanted, simulated.devices, out=Path(out), virtual=simulated)
     if file_format != "netcdf":
         export_run(found.run.folder, file_format=file_format, out=found.run.folder)
     return found
+
+
+def _planned(wanted: RunRequest, simulated: VirtualTribometer | Rehearsal, file: Path | None) -> DryRunAnswer:
+    """Plan of a virtual run, with what devices of a map cannot do and the time that it is expected to take."""
+    found = dry_runs.dry_run(wanted.protocol, rig=wanted.rig)
+    if file is not None:
+        beyond = unfulfilled(read_device_map(file), wanted.protocol)
+        found = replace(found, refusals=(*found.refusals, *beyond))
+    return DryRunAnswer(
+        protocol=wanted.protocol,
+        found=found,
+        expected=None if found.refusals else simulated.expected_time(wanted.protocol),
+        rehearsed=simulated if isinstance(simulated, Rehearsal) else None,
+    )
 
 
 def _require_possible_dry(protocol: Protocol, rig: Rig | None) -> None:
@@ -338,6 +406,19 @@ def _require_possible_dry(protocol: Protocol, rig: Rig | None) -> None:
     if refusals:
         more = f" (and {len(refusals) - 1} more by {shown('dry_run')})" if len(refusals) > 1 else ""
         raise InvalidInput(f"impossible by a dry run: {refusals[0]}{more}; {shown('anyway')} runs it all the same")
+
+
+def _rehearsal(wanted: RunRequest, file: Path, faults: Sequence[str]) -> Rehearsal:
+    """Devices of a map on the virtual rig of a run."""
+    assert wanted.rig is not None
+    rig = _loaded(wanted.rig, wanted)
+    return rehearsal(read_device_map(file), rig, wanted.protocol, seed=wanted.seed, faults=faults)
+
+
+def _loaded(rig: Rig, wanted: RunRequest) -> Rig:
+    """Rig at the load of the protocol, where that states one."""
+    load = wanted.protocol.metadata.normal_load
+    return rig if load is None else replace(rig, normal_load=load)
 
 
 def _virtual_rig(wanted: RunRequest, *, real_time: bool = False) -> VirtualTribometer:
@@ -351,7 +432,7 @@ def _virtual_rig(wanted: RunRequest, *, real_time: bool = False) -> VirtualTribo
     if wanted.rig is None:
         raise InvalidInput(f"{shown('device_map')} virtual needs {shown('rig')}, whose friction it takes")
     metadata = wanted.protocol.metadata
-    rig = wanted.rig if metadata.normal_load is None else replace(wanted.rig, normal_load=metadata.normal_load)
+    rig = _loaded(wanted.rig, wanted)
     diameter = metadata.groove_diameter or GROOVE_DIAMETER
     sizes = Disturbances(contact_share=float(metadata.thermocouple == "contact"))
     return virtual_tribometer(rig, seed=wanted.seed, real_time=real_time, disturbances=sizes, groove_diameter=diameter)
