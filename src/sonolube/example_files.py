@@ -105,7 +105,7 @@ def example_file(name: str) -> ExampleFile:
 def _every() -> tuple[ExampleFile, ...]:
     """Every example file: those beside the package in its sources or inside it where it is installed, and protocols.
 
-    Of the scripts those of the folder itself, without gallery and notebooks.
+    Of the scripts those of the folder itself and the drivers beside maps of devices, without gallery and notebooks.
     """
     inside = _ROOM / "examples"
     folder = inside if inside.is_dir() else _ROOM.parents[1] / "examples"
@@ -113,7 +113,7 @@ def _every() -> tuple[ExampleFile, ...]:
     own = {
         f"examples/{path.as_posix()}": each
         for path, each in sources.items()
-        if path.parts[0] not in _LEFT_OUT and (path.suffix != ".py" or len(path.parts) == 1)
+        if path.parts[0] not in _LEFT_OUT and (path.suffix != ".py" or len(path.parts) == 1 or path.parts[0] == "lab")
     }
     protocols = {f"examples/protocols/{name}.toml": protocol_path(name) for name in protocol_names()}
     return tuple(ExampleFile(path=path, source=each) for path, each in (own | protocols).items())

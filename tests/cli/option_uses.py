@@ -769,7 +769,7 @@ MODES = {
             *(str(RIGS / "power_map.toml"), "--protocol", "FOLDER/short.toml"),
             *("--device", str(ROOT / "examples" / "lab" / "siglent_sdg.toml")),
         ),
-        {"--device": str(ROOT / "examples" / "lab" / "rigol_dg1000z.toml"), "--fault": "friction_reversed"},
+        {"--device": str(ROOT / "examples" / "lab" / "several_clocks.toml"), "--fault": "friction_reversed"},
     ),
     "lab virtual with a drive": Mode("lab virtual", (str(RIGS / "power_map.toml"),), AMPLITUDE),
     "lab hold": Mode(

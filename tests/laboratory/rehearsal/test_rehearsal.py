@@ -148,9 +148,9 @@ def test_a_stated_uncertainty_is_one_deviation_of_a_run_and_stands_in_the_truth(
         found.append(mean - 294.15)
     assert found[0] == approx(found[1])
     assert abs(found[0] - found[2]) > 0.01
-    with raises(InvalidInput, match="uncertainty of a temperature is a difference; give it in K"):
+    with raises(InvalidInput, match="uncertainty 2 degC is a temperature; expected a temperature difference"):
         changed(tmp_path, "devices.toml", ('offset = "0 degC"', 'offset = "0 degC"\nuncertainty = "2 degC"'))
-    with raises(InvalidInput, match="uncertainty must not be negative"):
+    with raises(InvalidInput, match="uncertainty must be positive, got -2 K"):
         changed(tmp_path, "devices.toml", ('offset = "0 degC"', 'offset = "0 degC"\nuncertainty = "-2 K"'))
 
 
