@@ -16,6 +16,7 @@ from sonolube.prediction.hierarchy import (
     POPULATION_PRIOR,
     OwnParameters,
     covariance_of_tests,
+    discrepancy_deviation,
 )
 from sonolube.prediction.posterior import Population
 from sonolube.prediction.predictive import ratio_draws
@@ -51,9 +52,10 @@ def _generated(closure: Closure, rig: TestedRig, hyperparameters: Floats, rng: n
     at = rig.at.conditions.scaled(decay_length=np.exp(own.log_factor))
     ratio = closure.ratio(own.log_parameter, at)
     exact = replace(rig, uncertainty=np.full(ratio.size, 1e-6))
-    covariance = covariance_of_tests(
-        ratio, exact, log_discrepancy=own.log_discrepancy, log_length=np.asarray(hyperparameters[5])
+    deviation = discrepancy_deviation(
+        ratio, rig.at.conditions, log_discrepancy=own.log_discrepancy, effect=closure.effect(own.log_parameter, at)
     )
+    covariance = covariance_of_tests(deviation, exact, log_length=np.asarray(hyperparameters[5]))
     generated = ratio + np.linalg.cholesky(covariance) @ rng.standard_normal(ratio.size)
     if rig.name == _NEW_RIG:
         generated = np.maximum(generated, 0.0)  # as predictions are; the likelihood has no such limit

@@ -12,6 +12,8 @@ LINEAR = Closure(
     median=float(np.exp(0.4)),
     spread=1.0,
     ratio=lambda logs, at: np.broadcast_arrays(np.asarray(logs), at.vibration_amplitude, at.decay_length)[0],
+    effect=lambda logs, at: np.ones(np.broadcast_shapes(np.shape(logs), at.vibration_amplitude.shape)),
+    bounds=lambda at: (0.0, np.inf),
 )
 """With it, all ratios are normally distributed."""
 

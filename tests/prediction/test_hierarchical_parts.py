@@ -1,19 +1,20 @@
 """Parts of the hierarchical model: priors, deviates, parameters of a rig, scale and width of discrepancy, scores."""
 
 from dataclasses import replace
-from math import exp, log, sqrt
+from math import exp, log, pi, sqrt
 
 import numpy as np
 from pytest import approx, mark
-from scipy.stats import chi2, multivariate_normal, norm
+from scipy.stats import chi2, multivariate_normal, norm, truncnorm
 from tests.prediction.linear_rigs import LINEAR, conditions, measured_rig
 
-from sonolube.prediction.evidence import UncertainConditions
+from sonolube.prediction.evidence import Conditions, UncertainConditions, normal_effect
 from sonolube.prediction.hierarchy import (
     OwnParameters,
     Prior,
     RigLikelihood,
     binomial_interval,
+    bounded_normals,
     central_interval,
     covariance_of_tests,
     discrepancy_correlation,
@@ -110,8 +111,12 @@ def test_a_discrepancy_decays_with_the_square_of_the_distance_over_its_length() 
 
 def test_a_discrepancy_is_a_quarter_without_a_reduction_and_full_from_a_fifth_on() -> None:
     at = conditions([2e-6] * 5, [0.04] * 5)
-    found = discrepancy_deviation(np.array([1.0, 0.96, 0.9, 0.8, 0.3]), at, log_discrepancy=np.log(np.array(0.1)))
-    assert found == approx([0.025, 0.025, 0.05, 0.1, 0.1])
+    scale, ratio = np.log(np.array(0.1)), np.array([1.0, 0.96, 0.9, 0.8, 0.3])
+    assert discrepancy_deviation(ratio, at, log_discrepancy=scale, effect=1.0) == approx([0.025, 0.025, 0.05, 0.1, 0.1])
+    effect = np.array([0.0, 0.5, 1.0, 0.1, 0.2])  # what vibration can do
+    assert discrepancy_deviation(ratio, at, log_discrepancy=scale, effect=effect) == approx(
+        [0, 0.0125, 0.05, 0.01, 0.02]
+    )
 
 
 def test_half_the_distance_from_the_tests_is_added_to_the_least_share_and_widens_all() -> None:
@@ -119,7 +124,7 @@ def test_half_the_distance_from_the_tests_is_added_to_the_least_share_and_widens
     at = conditions([2e-6] * 3, [0.26590 * exp(distance)] * 3)
     known = float(at.distance()[0])
     assert known == approx(distance, abs=1e-3)
-    found = discrepancy_deviation(np.array([1.0, 0.9, 0.5]), at, log_discrepancy=np.log(np.array(0.1)))
+    found = discrepancy_deviation(np.array([1.0, 0.9, 0.5]), at, log_discrepancy=np.log(np.array(0.1)), effect=1.0)
     wider = 0.1 * sqrt(1 + known**2)
     assert found == approx([(0.25 + known / 2) * wider, 0.5 * wider, wider])
 
@@ -127,10 +132,8 @@ def test_half_the_distance_from_the_tests_is_added_to_the_least_share_and_widens
 def test_the_covariance_of_tests_is_that_of_their_discrepancies_and_of_each_noise() -> None:
     rig = measured_rig([0.5, 0.9], conditions([2e-6, 2e-6], [0.04, 0.04 * exp(0.3)]))
     rig = replace(rig, uncertainty=np.array([0.02, 0.03]))
-    found = covariance_of_tests(
-        np.array([0.5, 0.9]), rig, log_discrepancy=np.log(np.array(0.1)), log_length=np.log(np.array(0.5))
-    )
-    across = 0.1 * 0.05 * exp(-0.09 / 0.5)  # full and half width, exp(-0.3^2/(2 0.5^2))
+    found = covariance_of_tests(np.array([0.1, 0.05]), rig, log_length=np.log(np.array(0.5)))
+    across = 0.1 * 0.05 * exp(-0.09 / 0.5)  # exp(-0.3^2/(2 0.5^2))
     assert found == approx(np.array([[0.01 + 4e-4, across], [across, 0.0025 + 9e-4]]))
 
 
@@ -150,3 +153,31 @@ def test_a_closure_that_is_linear_in_both_logarithms_has_normally_distributed_te
     common = 0.1**2 + 0.8**2 * ((measured or 0.15) ** 2 + 0.05**2)
     exact = multivariate_normal(mean, common * np.ones((2, 2)) + 0.15**2 * np.eye(2)).logpdf(rig.friction_ratio)
     assert RigLikelihood(closure, rig)(np.vstack([row] * 300)) == approx(np.full(300, exact), abs=0.12)  # of 64 nodes
+
+
+@mark.parametrize(
+    ("mean", "deviation", "low", "high"), [(0.3, 0.2, 0.0, 1.0), (0.95, 0.4, 0.2, 1.0), (0.5, 0.1, 0.0, np.inf)]
+)
+def test_bounded_normals_are_those_of_a_truncated_normal_distribution(
+    mean: float, deviation: float, low: float, high: float
+) -> None:
+    shares = (np.arange(2000) + 0.5) / 2000
+    found = bounded_normals(np.array(mean), np.array(deviation), norm.ppf(shares), low=low, high=high)
+    ends = (low - mean) / deviation, (high - mean) / deviation
+    assert found == approx(truncnorm(*ends, loc=mean, scale=deviation).ppf(shares), abs=2e-5)
+
+
+def test_bounded_normals_far_outside_are_at_the_bound_next_to_them() -> None:
+    found = bounded_normals(np.array([3.0, -2.0]), np.array([0.01, 0.01]), np.array([0.3, 0.3]), low=0.0, high=1.0)
+    assert found == approx([1.0, 0.0])
+    assert bounded_normals(np.array(0.4), np.array(0.0), np.array(1.0), low=0.0, high=1.0) == approx(0.4)
+
+
+def test_what_vibration_can_do_vanishes_with_its_amplitude_and_against_fast_sliding() -> None:
+    # l = 1 um, D_c = 2 um, omega a of 1 um at 1/(2 pi) Hz is 1 um/s
+    at = Conditions(
+        vibration_amplitude=np.array([1e-6, 0.1e-6, 1e-6, 1e-6]), frequency=np.full(4, 0.5 / pi),
+        sliding_speed=np.array([1e-12, 1e-13, 2e-6, 20e-6]), decay_length=np.full(4, 1e-6),
+    )  # fmt: skip
+    # a fifth of a decay length on counts in full; xi of 0, 0, 1, 10
+    assert normal_effect(log(2e-6), at) == approx([1.0, 0.5, 0.5, 1 / 101])

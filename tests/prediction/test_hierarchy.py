@@ -36,7 +36,7 @@ def test_the_discrepancy_grows_with_the_distance_from_the_published_tests() -> N
     assert distance_from_tests(within) == approx([0, 0])
     fastest = max(rig.at.conditions.sliding_speed.max() for rig in published_rigs())
     assert distance_from_tests(beyond)[1] == approx(np.log(10.0 / fastest))
-    near, far = discrepancy_deviation(np.array([1.0, 1.0]), beyond, log_discrepancy=np.log(np.array(0.1)))
+    near, far = discrepancy_deviation(np.array([1.0, 1.0]), beyond, log_discrepancy=np.log(np.array(0.1)), effect=1.0)
     assert near == approx(0.025)
     assert far == approx(0.1 * np.hypot(1, np.log(10.0 / fastest)))
 

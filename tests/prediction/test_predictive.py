@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
-from pytest import approx
+from pytest import approx, mark
 from scipy.stats import multivariate_normal
 from tests.prediction.linear_rigs import LINEAR, conditions, measured_rig
 from tests.same import same
@@ -20,10 +20,11 @@ KNOWN = Posterior(closure=LINEAR, hyperparameters=SHARP)
 """With next to no discrepancy, the heavy tail of its scale does not count, and all is normal."""
 
 
-def uncertain(amplitudes: list[float], speeds: list[float], *, length: float | None = None) -> UncertainConditions:
-    return UncertainConditions(
-        conditions=conditions(amplitudes, speeds), decay_length_spread=length, amplitude_spread=0.05
-    )
+def uncertain(
+    amplitudes: list[float], speeds: list[float], *, length: float | None = None, frequency: float = 2e4
+) -> UncertainConditions:
+    at = replace(conditions(amplitudes, speeds), frequency=np.full(len(speeds), frequency))
+    return UncertainConditions(conditions=at, decay_length_spread=length, amplitude_spread=0.05)
 
 
 def spread(ratio: Floats) -> float:
@@ -68,12 +69,15 @@ def test_many_sharp_tests_are_conditioned_on_by_steps_as_by_one_formula() -> Non
 
 def test_a_test_counts_near_its_conditions_and_less_the_farther_away() -> None:
     own = runs([0.3], [2e-6], [0.02])
-    near, far, none = (
-        spread(ratio_draws(learned().friction, uncertain([2e-6], [speed]), count=4000, own=each))
-        for speed, each in ((0.02, own), (0.3, own), (0.3, None))
-    )
+
+    def share_left(speed: float) -> float:
+        at = uncertain([2e-6], [speed])
+        left, before = (spread(ratio_draws(learned().friction, at, count=4000, own=each)) for each in (own, None))
+        return left / before
+
+    near, far = share_left(0.02), share_left(0.3)
     assert near < 0.75 * far
-    assert far < none * 1.05
+    assert far < 1.05
 
 
 def test_more_own_tests_narrow_the_interval() -> None:
@@ -114,16 +118,38 @@ def test_ratios_above_one_that_were_measured_are_believed_where_they_were_measur
     assert found.check.contradicted
 
 
-def test_without_vibration_friction_is_unchanged_within_the_least_discrepancy() -> None:
-    draws = ratio_draws(learned().friction, uncertain([1e-11], [0.02]), count=4000)
-    assert np.quantile(draws, [0.1, 0.5, 0.9]) == approx([1, 1, 1], abs=0.06)
+@mark.parametrize("frequency", [1e3, 2e4, 1e6])
+def test_a_picometre_of_vibration_changes_nothing_at_any_frequency(frequency: float) -> None:
+    at = uncertain([1e-12], [0.1], frequency=frequency)
+    assert ratio_draws(learned().friction, at, count=4000) == approx(np.ones((4000, 1)), abs=1e-4)
 
 
-def test_beyond_the_critical_speed_friction_is_unchanged_but_less_certain_the_farther_from_all_tests() -> None:
-    slow, fast = (ratio_draws(learned().friction, uncertain([0.5e-6], [v]), count=4000) for v in (0.3, 100.0))
-    assert np.median(slow) == approx(1, abs=0.02)
-    assert np.median(fast) == approx(1, abs=0.02)
-    assert spread(fast) > 4 * spread(slow)
+@mark.parametrize("amplitude", [0.5e-6, 3e-6, 20e-6])
+@mark.parametrize(("times", "least"), [(30.0, 0.9), (100.0, 0.97)])
+def test_sliding_much_faster_than_the_vibration_leaves_friction_as_it_is(
+    amplitude: float, times: float, least: float
+) -> None:
+    speed = times * 2 * np.pi * 2e4 * amplitude
+    draws = ratio_draws(learned().friction, uncertain([amplitude], [speed]), count=4000)
+    assert np.quantile(draws, 0.025) > least
+    assert draws.max() <= 1
+
+
+@mark.parametrize("speed", [1e-6, 1e-3, 0.03, 1.0])
+@mark.parametrize("amplitude", [1e-8, 2e-6, 2e-4])
+def test_the_mean_ratio_is_at_most_one_and_no_draw_is_exactly_an_end(amplitude: float, speed: float) -> None:
+    draws = ratio_draws(learned().friction, uncertain([amplitude], [speed]), count=4000)
+    assert draws.min() > 0
+    assert draws.max() <= 1
+    assert np.mean(draws == 1) < 0.2  # but where friction does not change at all
+
+
+def test_the_interval_narrows_towards_the_speed_from_which_on_vibration_does_nothing() -> None:
+    widths = [
+        spread(ratio_draws(learned().friction, uncertain([2e-6], [2 * np.pi * 2e4 * 2e-6 * ratio]), count=4000))
+        for ratio in (0.5, 1.06, 2.1, 5.3, 27)
+    ]
+    assert widths == sorted(widths, reverse=True)
 
 
 def test_own_tests_that_rise_with_the_amplitude_contradict_the_prediction() -> None:

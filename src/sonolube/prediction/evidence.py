@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import groupby
-from math import hypot, log
+from math import hypot, log, pi
 from typing import Final
 
 import numpy as np
@@ -42,6 +42,11 @@ class Conditions:
     frequency: Floats
     sliding_speed: Floats
     decay_length: Floats
+
+    @property
+    def velocity_ratio(self) -> Floats:
+        """Sliding speed over peak velocity of the vibration. []"""
+        return np.asarray(self.sliding_speed / (2 * pi * self.frequency * self.vibration_amplitude))
 
     def scaled(self, *, decay_length: Floats) -> "Conditions":
         """Conditions with decay lengths times factors, which broadcast."""
@@ -104,6 +109,10 @@ class Closure:
         Lognormal prior of the parameter: its median, and the standard deviation of its logarithm.
     ratio : callable
         Friction ratio of the logarithm of the parameter and of the conditions.
+    effect : callable
+        Share from 0 to 1 of the discrepancy that vibration can cause there, of the same arguments.
+    bounds : callable
+        Lowest and highest mean friction ratio that physics admits at conditions.
     """
 
     name: str
@@ -113,6 +122,32 @@ class Closure:
     median: float
     spread: float
     ratio: Callable[[ArrayLike, Conditions], Floats]
+    effect: Callable[[ArrayLike, Conditions], Floats]
+    bounds: Callable[[Conditions], tuple[ArrayLike, ArrayLike]]
+
+
+FULL_EFFECT: Final = 0.2
+"""Reduction from which on a discrepancy is as large as it becomes. []"""
+
+
+def normal_effect(log_length: ArrayLike, at: Conditions) -> Floats:
+    r"""Share of the discrepancy that vibration along the normal can cause, from 0 to 1. []
+
+    `log_length` is the logarithm of the memory or slip length D_c; it broadcasts against the conditions.
+
+    .. math:: \frac{\min(a/l,\ 0.2)}{0.2}\, \frac{1}{1 + \xi^2}, \qquad \xi = \frac{v_r}{\omega a}\, \frac{l}{D_c}
+
+    At rest friction falls by :math:`1 - e^{-a/l}/I_0(a/l) \le a/l`, and by the friction models not at all from
+    :math:`\xi = 1` on: sliding that is faster than the vibration passes a memory length while the load hardly changes.
+    """
+    speed = at.velocity_ratio * at.decay_length / np.exp(log_length)
+    at_rest = np.minimum(at.vibration_amplitude / at.decay_length / FULL_EFFECT, 1.0)
+    return np.asarray(at_rest / (1 + speed**2))
+
+
+def normal_bounds(_: Conditions) -> tuple[ArrayLike, ArrayLike]:
+    """Under a dead load, which is the mean of the normal force, vibration along the normal does not raise friction."""
+    return 0.0, 1.0
 
 
 def _stick_slip(log_length: ArrayLike, at: Conditions) -> Floats:
@@ -146,6 +181,8 @@ CLOSURES: Final = (
         median=1.5e-6,
         spread=1.0,
         ratio=_stick_slip,
+        effect=normal_effect,
+        bounds=normal_bounds,
     ),
     Closure(
         name="spring_contact",
@@ -155,6 +192,8 @@ CLOSURES: Final = (
         median=2e-6,
         spread=1.0,
         ratio=_spring,
+        effect=normal_effect,
+        bounds=normal_bounds,
     ),
 )
 """Closures that are learned and weighed: in each, contact is loaded, slips and is lost."""

@@ -317,11 +317,10 @@ def _two_points(found: RigPrediction, inputs: RigInputs) -> tuple[Floats, Floats
     """Draws of the ratio at the operating point and at a higher speed, the discrepancy correlated between both."""
     speeds = inputs.sliding_speed * np.array([1.0, _FARTHER])
     at: Conditions = inputs.at(sliding_speed=speeds).conditions
-    mean, deviation = found.draws.normals(at)
-    rows = np.arange(found.count) % len(mean)
     length = found.draws.hyperparameters[:, 5]
+    rows = np.arange(found.count) % len(length)
     correlation = discrepancy_correlation(at, at, log_length=length)[rows, 0, 1]
     first, other = np.random.default_rng(9).standard_normal((2, found.count))
     second = correlation * first + np.sqrt(1 - correlation**2) * other
-    near = mean[rows, 0] + deviation[rows, 0] * first
-    return np.maximum(near, 0.0), np.maximum(mean[rows, 1] + deviation[rows, 1] * second, 0.0)
+    here, farther = found.with_deviates(at, np.stack([first, second], axis=1)).T
+    return here, farther

@@ -4,15 +4,17 @@ For one friction model f with the parameter theta, test i on rig r has the frict
 
     R_i = f(x_i; theta_r, l_r) + delta_r(x_i) + e_i,    e_i ~ N(0, u_i^2),
     ln theta_r ~ N(mu, tau^2),    ln (l/a)_r ~ N(ln (l_0/a) + kappa, tau_l^2 + s_a^2),
-    delta_r = s_r w(f) g_r,  g_r ~ Gaussian process, sigma^2 exp(-d^2 / (2 lambda^2)), d the distance in (ln a, ln v),
+    delta_r = s_r w g_r,  g_r ~ Gaussian process, sigma^2 exp(-d^2 / (2 lambda^2)), d the distance in (ln a, ln v),
     s_r^2 = nu / chi^2_nu.
 
 The decay length l of a worn contact is a quantity of each rig: l_0 is a reference, exp(kappa) the factor on it common
 to all rigs, tau_l the scatter between rigs. Where l was measured it takes the place of l_0 exp(kappa), its error that
-of tau_l. The discrepancy delta is least without a reduction: w rises from 0.25 at f = 1 to 1 at f <= 0.8. Outside the
-range of the published tests it grows with the distance D from it, in logarithms: w is at least 0.25 + D/2, and sigma is
-larger by sqrt(1 + D^2). Its scale s_r is heavy-tailed, so that runs of a rig that no parameter explains widen the
-discrepancy instead of the noise.
+of tau_l. The discrepancy delta is least without a reduction: a factor of w rises from 0.25 at f = 1 to 1 at
+f <= 0.8. Outside the range of the published tests it grows with the distance D from it, in logarithms: that factor is
+at least 0.25 + D/2, and sigma is larger by sqrt(1 + D^2). All of it is multiplied by what vibration can do
+(`Closure.effect`), so that it vanishes with the amplitude and against fast sliding, however far that is from the
+tests. Its scale s_r is heavy-tailed, so that runs of a rig that no parameter explains widen the discrepancy instead of
+the noise. The likelihood takes delta as normal; a prediction leaves out of it what physics forbids (`Closure.bounds`).
 """
 
 from dataclasses import dataclass
@@ -25,7 +27,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, Integers
-from sonolube.prediction.evidence import Closure, Conditions, TestedRig, UncertainConditions
+from sonolube.prediction.evidence import FULL_EFFECT, Closure, Conditions, TestedRig, UncertainConditions
 
 PROBABILITIES: Final = (0.5, 0.8, 0.95)
 """Of the predictive intervals that are told and judged."""
@@ -95,7 +97,6 @@ HYPERPARAMETERS: Final = (
 OWN_DEVIATES: Final = 3
 """Number of standard normal deviates of one rig: of ln theta, of ln l/a, of the scale of the discrepancy."""
 
-_FULL_DISCREPANCY: Final = 0.2  # reduction from which the discrepancy is as large as it becomes
 _MIN_DISCREPANCY: Final = 0.25  # share of it without a reduction
 _PER_DISTANCE: Final = 0.5  # rise of that share with the distance from the published tests
 _FARTHEST: Final = 7.0  # deviates of the scale of the discrepancy, whose degrees of freedom nu are 4
@@ -155,6 +156,39 @@ def standard_normals(count: int, *, columns: int, seed: int) -> Floats:
     normals = np.array([quantile(share) for share in shares.ravel().tolist()]).reshape(shares.shape)
     normals.flags.writeable = False
     return normals
+
+
+_NORMAL_GRID: Final = np.linspace(-8.0, 8.0, 4097)
+
+
+@cache
+def _normal_shares() -> Floats:
+    """Distribution function of the standard normal distribution on its grid."""
+    return np.array([0.5 * erfc(-z / sqrt(2)) for z in _NORMAL_GRID.tolist()])
+
+
+def bounded_normals(
+    mean: Floats, deviation: Floats, normals: Floats, *, low: Floats | float, high: Floats | float
+) -> Floats:
+    r"""Normally distributed numbers given that they lie between bounds, rising with standard normal deviates.
+
+    All arguments broadcast; `high` may be infinite. A mean far outside gives the bound next to it.
+
+    .. math:: m - s\,\Phi^{-1}\left[b + \Phi(-z)\,(c - b)\right], \qquad
+              b = \Phi\frac{m - h}{s}, \quad c = \Phi\frac{m - g}{s}
+
+    between g and h, with the distribution function interpolated: shares to 1e-6, deviates beyond 8 left out.
+    """
+    shares, side = _normal_shares(), np.maximum(deviation, 1e-12)
+
+    def share(deviates: ArrayLike) -> Floats:
+        steps = np.clip((np.asarray(deviates) + 8.0) * 256.0, 0.0, 4095.999)
+        below = steps.astype(np.intp)
+        return np.asarray(shares[below] + (steps - below) * (shares[below + 1] - shares[below]))
+
+    above = share((mean - high) / side)
+    found = above + share(-normals) * (share((mean - low) / side) - above)
+    return np.clip(mean - side * np.interp(found, shares, _NORMAL_GRID), low, high)
 
 
 def log_hyperprior(closure: Closure, hyperparameters: Floats, prior: Prior = POPULATION_PRIOR) -> Floats:
@@ -251,8 +285,13 @@ class RigLikelihood:
         own = OwnParameters(hyperparameters[:, None], self.deviates, at)
         ratio = self._ratios(own)
         residual = self.rig.friction_ratio - ratio
+        effect = self.closure.effect(
+            own.log_parameter[..., None], at.conditions.scaled(decay_length=np.exp(own.log_factor)[..., None])
+        )
         covariance = covariance_of_tests(
-            ratio, self.rig, log_discrepancy=own.log_discrepancy, log_length=hyperparameters[:, None, 5]
+            discrepancy_deviation(ratio, at.conditions, log_discrepancy=own.log_discrepancy, effect=effect),
+            self.rig,
+            log_length=hyperparameters[:, None, 5],
         )
         return np.asarray(np.logaddexp.reduce(log_normal_density(residual, covariance), axis=1) - np.log(_NODES))
 
@@ -272,15 +311,14 @@ def _place(values: Floats, grid: Floats) -> tuple[Integers, Floats]:
     return below, (steps - below)[..., None]
 
 
-def covariance_of_tests(ratio: Floats, rig: TestedRig, *, log_discrepancy: Floats, log_length: Floats) -> Floats:
+def covariance_of_tests(deviation: Floats, rig: TestedRig, *, log_length: Floats) -> Floats:
     """Covariance of the measured ratios of a rig about those of a friction model.
 
-    `ratio` has shape (..., n). Shape (..., n, n).
+    `deviation`, of the discrepancy, has shape (..., n). Shape (..., n, n).
     """
     at = rig.at.conditions
-    side = discrepancy_deviation(ratio, at, log_discrepancy=log_discrepancy)
     near = discrepancy_correlation(at, at, log_length=log_length)
-    return np.asarray(near * side[..., :, None] * side[..., None, :] + np.diag(rig.uncertainty**2))
+    return np.asarray(near * deviation[..., :, None] * deviation[..., None, :] + np.diag(rig.uncertainty**2))
 
 
 def discrepancy_correlation(one: Conditions, other: Conditions, *, log_length: ArrayLike) -> Floats:
@@ -289,11 +327,11 @@ def discrepancy_correlation(one: Conditions, other: Conditions, *, log_length: A
     return np.asarray(np.exp(-0.5 * squared_distances(one, other) * inverse))
 
 
-def discrepancy_deviation(ratio: Floats, at: Conditions, *, log_discrepancy: Floats) -> Floats:
-    """Standard deviation of the discrepancy at conditions; `ratio` has shape (..., n)."""
+def discrepancy_deviation(ratio: Floats, at: Conditions, *, log_discrepancy: Floats, effect: Floats | float) -> Floats:
+    """Standard deviation of the discrepancy at conditions; `ratio` and `effect` have shape (..., n)."""
     distance = at.distance()
     least = np.minimum(_MIN_DISCREPANCY + _PER_DISTANCE * distance, 1.0)
-    share = np.clip((1 - ratio) / _FULL_DISCREPANCY, least, 1.0) * np.sqrt(1 + distance**2)
+    share = np.clip((1 - ratio) / FULL_EFFECT, least, 1.0) * np.sqrt(1 + distance**2) * effect
     return np.asarray(np.exp(log_discrepancy)[..., None] * share)
 
 

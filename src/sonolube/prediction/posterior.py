@@ -238,27 +238,49 @@ class RigDraws:
     def normals(self, conditions: Conditions) -> tuple[Floats, Floats]:
         """Means and standard deviations of the normal distribution of the ratio by each draw, each of shape (p, m)."""
         mean = self.means(conditions)
-        side = self._deviation(mean, conditions)
+        side = self.deviation(mean, conditions)
         if self.own is None:
             return mean, side
         tested = self.own.at.conditions
         seen = self.means(tested)
         near = discrepancy_correlation(conditions, tested, log_length=self.hyperparameters[:, 5])
-        across = near * side[:, :, None] * self._deviation(seen, tested)[:, None, :]
+        across = near * side[:, :, None] * self.deviation(seen, tested)[:, None, :]
         gain = np.swapaxes(np.linalg.solve(self.covariance(seen), np.swapaxes(across, 1, 2)), 1, 2)
         mean = mean + np.einsum("pmn,pn->pm", gain, self.own.friction_ratio - seen)
         return mean, np.sqrt(np.maximum(side**2 - np.einsum("pmn,pmn->pm", gain, across), 0.0))
 
-    def _deviation(self, ratio: Floats, at: Conditions) -> Floats:
-        """Standard deviation of the discrepancy by each draw, shape (p, m)."""
-        return discrepancy_deviation(ratio, at, log_discrepancy=self.parameters.log_discrepancy)
+    def deviation(self, ratio: Floats, conditions: Conditions) -> Floats:
+        """Standard deviation of the discrepancy about ratios of the friction model by each draw, shape (p, m)."""
+        own = self.parameters
+        scaled = conditions.scaled(decay_length=np.exp(own.log_factor)[:, None])
+        effect = self.posterior.closure.effect(own.log_parameter[:, None], scaled)
+        return discrepancy_deviation(ratio, conditions, log_discrepancy=own.log_discrepancy, effect=effect)
 
     def covariance(self, seen: Floats) -> Floats:
         """Covariance of the rig's own tests about the ratios of the friction model, shape (p, n, n)."""
         assert self.own is not None
-        return covariance_of_tests(
-            seen, self.own, log_discrepancy=self.parameters.log_discrepancy, log_length=self.hyperparameters[:, 5]
-        )
+        deviation = self.deviation(seen, self.own.at.conditions)
+        return covariance_of_tests(deviation, self.own, log_length=self.hyperparameters[:, 5])
+
+    def bounds(self, conditions: Conditions) -> tuple[Floats, Floats]:
+        """Lowest and highest mean ratio at conditions by each draw, shapes (p, m).
+
+        Own tests that lie beyond a bound by twice their uncertainty, in any of the draws, lift it: to 0, or altogether.
+        """
+        low, high = self._admitted(conditions)
+        if self.own is not None:
+            least, most = self._admitted(self.own.at.conditions)
+            measured, margin = self.own.friction_ratio, 2 * self.own.uncertainty
+            low = np.zeros_like(low) if np.any(measured + margin < least) else low
+            high = np.full_like(high, np.inf) if np.any(measured - margin > most) else high
+        return low, high
+
+    def _admitted(self, conditions: Conditions) -> tuple[Floats, Floats]:
+        """Bounds of the friction ratio by the closure, by each draw."""
+        scaled = conditions.scaled(decay_length=np.exp(self.parameters.log_factor)[:, None])
+        shape = scaled.decay_length.shape
+        low, high = (np.broadcast_to(each, shape) for each in self.posterior.closure.bounds(scaled))
+        return np.asarray(low, dtype=np.float64), np.asarray(high, dtype=np.float64)
 
     def log_density(self) -> Floats:
         """Logarithm of the density of the rig's own tests by each draw, shape (p,)."""

@@ -22,7 +22,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.prediction.evidence import Conditions, TestedRig, UncertainConditions
-from sonolube.prediction.hierarchy import log_normal_density, standard_normals
+from sonolube.prediction.hierarchy import bounded_normals, log_normal_density, standard_normals
 from sonolube.prediction.posterior import Posterior, RigDraws, rig_draws, systematic_rows
 
 _FREEDOM: Final = 2.0  # degrees of freedom of the errors of runs
@@ -196,13 +196,18 @@ class RigPrediction:
     def ratios(self, at: Conditions) -> Floats:
         """Friction ratios at conditions, equally probable.
 
-        Shape (count, m). Not negative; one normal deviate of the discrepancy a draw, so that curves are smooth.
+        Shape (count, m). Within the bounds of the closure, but where own tests lie beyond them; one normal deviate of
+        the discrepancy a draw, so that curves are smooth.
         """
-        mean, deviation = self.draws.normals(at)
-        rows = np.arange(self.count) % len(mean)
         fresh = standard_normals(self.count, columns=1, seed=5)
-        shuffled = fresh[np.random.default_rng(6).permutation(self.count)]
-        return np.maximum(mean[rows] + deviation[rows] * shuffled, 0.0)
+        return self.with_deviates(at, fresh[np.random.default_rng(6).permutation(self.count)])
+
+    def with_deviates(self, at: Conditions, deviates: Floats) -> Floats:
+        """Friction ratios with given normal deviates of the discrepancy, shape (count, m) or (count, 1)."""
+        mean, deviation = self.draws.normals(at)
+        low, high = self.draws.bounds(at)
+        rows = np.arange(self.count) % len(mean)
+        return bounded_normals(mean[rows], deviation[rows], deviates, low=low[rows], high=high[rows])
 
 
 def rig_prediction(

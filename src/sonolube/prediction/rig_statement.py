@@ -11,7 +11,7 @@ from sonolube.prediction.bodies import pair_of, wear_statement, worn_body
 from sonolube.prediction.hierarchy import PROBABILITIES, central_interval, sorted_quantiles
 from sonolube.prediction.inputs import OwnRuns, RigInputs
 from sonolube.prediction.predictive import Laboratory, RigPrediction, RunCheck
-from sonolube.prediction.within_plane import COULOMB, NO_WEAR, tested_words
+from sonolube.prediction.within_plane import NO_WEAR, RIGID_MODEL, tested_words
 from sonolube.rig import Rig
 from sonolube.rig.datasets import LabelledArray, LabelledArrays
 from sonolube.rig.friction_and_wear import direction_caveats
@@ -87,7 +87,7 @@ def prediction_attributes(
 ) -> dict[str, object]:
     """Title, caveats, assumptions and numbers without a distribution of a prediction."""
     point = inputs.point
-    said_above = not rig.direction.is_normal and rig.friction_model.name == COULOMB.name
+    said_above = not rig.direction.is_normal and rig.friction_model.name == RIGID_MODEL
     own_caveats = [each for each in point.caveats if not said_above or each not in direction_caveats(resolved_rig(rig))]
     caveats = [*limits.caveats, *own_caveats, *extrapolation_caveats(rig, inputs)]
     caveats += () if laboratory is None else laboratory.caveats

@@ -12,7 +12,7 @@ from scipy.special import logsumexp, ndtri
 from sonolube.checks import Floats, Integers
 from sonolube.design.statistics import sobol_sample
 from sonolube.prediction.evidence import TestedRig, UncertainConditions
-from sonolube.prediction.hierarchy import discrepancy_correlation, discrepancy_deviation, squared_distances
+from sonolube.prediction.hierarchy import discrepancy_correlation, squared_distances
 from sonolube.prediction.posterior import Posterior, RigDraws, rig_draws
 
 _Information = Callable[[Iterable[int]], float]
@@ -242,13 +242,13 @@ def _outcomes(drawn: RigDraws, at: UncertainConditions, *, weight: float, seed: 
     chosen = np.random.default_rng(seed).permutation(drawn.rows.size)[:DRAWS]
     draws = drawn.taken(chosen)
     means, own, updates = draws.means(at.conditions), drawn.own, None
-    scale, log_length = draws.parameters.log_discrepancy, draws.hyperparameters[:, 5]
-    deviations = discrepancy_deviation(means, at.conditions, log_discrepancy=scale)
+    log_length = draws.hyperparameters[:, 5]
+    deviations = draws.deviation(means, at.conditions)
     if own is not None:
         tested = own.at.conditions
         seen = draws.means(tested)
         near = discrepancy_correlation(at.conditions, tested, log_length=log_length)
-        sides = discrepancy_deviation(seen, tested, log_discrepancy=scale)
+        sides = draws.deviation(seen, tested)
         inverse = np.linalg.inv(np.linalg.cholesky(draws.covariance(seen)))
         updates = near * deviations[:, :, None] * sides[:, None, :] @ np.swapaxes(inverse, 1, 2)
         means = means + np.einsum("jmn,jn->jm", updates, np.einsum("jab,jb->ja", inverse, own.friction_ratio - seen))

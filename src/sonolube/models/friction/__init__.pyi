@@ -108,6 +108,10 @@ from .oscillating_contact.driven_spring import (
     guided_critical_speed as guided_critical_speed,
     guided_oscillation_ratio as guided_oscillation_ratio,
 )
+from .oscillating_contact.exponential_contact import (
+    exponential_longitudinal_ratio as exponential_longitudinal_ratio,
+    exponential_static_ratio as exponential_static_ratio,
+)
 from .oscillating_contact.rigid_guide import (
     longitudinal_oscillation_ratio as longitudinal_oscillation_ratio,
     normal_oscillation_ratio as normal_oscillation_ratio,
