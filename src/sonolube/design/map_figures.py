@@ -16,13 +16,14 @@ from sonolube.vocabulary import quantity
 if TYPE_CHECKING:
     import xarray as xr
 
+_SAME_AXES = 0.01  # relative, which nobody sees along an axis
 _SAME_PANELS = 0.005  # of the friction reduction, which nobody sees in contours of 5 %
 
 
 MAP_LAYOUTS: Mapping[str, tuple[str, str, str | None]] = MappingProxyType(
     {
         "velocity-stress": ("sliding_speed", "nominal_pressure", "voltage_peak_to_peak"),
-        "velocity-power": ("sliding_speed", "actuator_power", "normal_load"),
+        "velocity-power": ("sliding_speed", "power_to_supply", "normal_load"),
         "velocity-amplitude": ("sliding_speed", "vibration_amplitude", "normal_load"),
         "frequency-voltage": ("frequency", "voltage_peak_to_peak", None),
         "frequency-amplitude": ("frequency", "vibration_amplitude", None),
@@ -42,21 +43,32 @@ def map_layout(computed: "xr.Dataset") -> tuple[str, str, str | None]:
     Returns
     -------
     tuple of str, str and str or None
-        As in `MAP_LAYOUTS`, with panels of an amplitude where the rig has no voltage.
+        As in `MAP_LAYOUTS`, with panels of an amplitude where the rig has no voltage, and over the charge of the
+        capacitance where the map is of that power.
     """
     across, up, panel = MAP_LAYOUTS[computed.attrs["map"]]
+    up = map_power(computed) if up == "power_to_supply" else up
     return across, up, quantity_of_axis(computed.dims).name if panel == VOLTAGE.name else panel
+
+
+def map_power(computed: "xr.Dataset") -> str:
+    """Name of the power of a map: to be supplied, or the charge of the capacitance."""
+    return str(computed.attrs.get("power", "power_to_supply"))
 
 
 def same_panels(computed: "xr.Dataset") -> bool:
     """Whether every panel of a map shows the same friction reduction.
 
-    True where the panels, of which there are several, differ nowhere by more than 0.005, a tenth of a contour step, and
-    lack a result at the same points.
+    True where the panels, of which there are several, differ nowhere by more than 0.005, a tenth of a contour step,
+    lack a result at the same points, and have one vertical axis within 1 %.
     """
-    panel = map_layout(computed)[2]
+    _, up, panel = map_layout(computed)
     if panel is None or computed.sizes[panel] < 2:
         return False
+    if panel in computed[up].dims:
+        first = computed[up].isel({panel: 0})
+        if bool((np.abs(computed[up] - first) > _SAME_AXES * np.abs(first)).any()):
+            return False
     reduction = computed["friction_reduction"]
     missing = reduction.isnull()
     if bool((missing != missing.isel({panel: 0})).any()) or bool(missing.all()):
@@ -83,7 +95,8 @@ _MOVED_LABEL = "measured, moved to the panel by the model"
 _SATURATION_LABEL = "above it doubling the power gains less than 5 %"
 _AXES: dict[str, tuple[float, Axis]] = {
     "sliding_speed": (1e3, Axis("Sliding speed", "mm/s")),
-    "actuator_power": (1.0, Axis("Power of the amplifier", "W")),
+    "power_to_supply": (1.0, Axis("Power to supply", "W")),
+    "charging_power": (1.0, Axis("Power of the amplifier", "W")),
     "nominal_pressure": (1e-6, Axis("Nominal stress", "MPa")),
     "frequency": (1e-3, Axis("Drive frequency", "kHz")),
     **{each.name: (each.axis_scale, each.axis) for each in (VOLTAGE, AMPLITUDE)},
@@ -219,7 +232,7 @@ def _contours(part: "xr.Dataset", x_name: str, y_name: str, levels: Floats) -> t
     lines = levels[2:-1:2] if varies else None
     field = Field(x=x, y=y, values=percent, label="Friction reduction", unit="%", levels=levels, lines=lines)
     saturation = part["saturation_power"].values if "saturation_power" in part else np.array([np.nan])
-    if y_name != "actuator_power" or not np.isfinite(saturation).any():
+    if y_name not in ("power_to_supply", "charging_power") or not np.isfinite(saturation).any():
         return (field,)
     ridge = Line(x=x, y=saturation, label=_SATURATION_LABEL, colour="0", dash=1, has_halo=True)
     return field, ridge
@@ -278,8 +291,9 @@ def _surface(
 ) -> tuple[Floats, Floats, Floats]:
     """Coordinates in the units of their axes, and friction reduction over y and x."""
     x, y = part[x_name], part[y_name]
-    reduction = part[of].transpose(y.dims[0], x.dims[0]).values
-    return x.values * _AXES[x_name][0], y.values * _AXES[y_name][0], reduction
+    order = np.argsort(y.values, kind="stable")  # a power may fall where the voltage rises past a resonance
+    reduction = part[of].transpose(y.dims[0], x.dims[0]).values[order]
+    return x.values * _AXES[x_name][0], y.values[order] * _AXES[y_name][0], reduction
 
 
 def _panel_title(part: "xr.Dataset", panel: str) -> str:
@@ -287,6 +301,7 @@ def _panel_title(part: "xr.Dataset", panel: str) -> str:
     if panel == AMPLITUDE.name:
         return f"amplitude {format_si(float(part[panel]), AMPLITUDE.unit)}"
     if panel == "voltage_peak_to_peak":
-        volts, watts = float(part[panel]), float(part["actuator_power"])
-        return f"{format_si(volts, 'V')}, {format_si(watts, 'W')}"
+        volts, watts = float(part[panel]), part[map_power(part)].values
+        low, high = (format_si(float(end), "W") for end in (watts.min(), watts.max()))
+        return f"{format_si(volts, 'V')}, {low if low == high else f'{low} to {high}'}"
     return f"{format_si(float(part[panel]), 'N')}, {format_si(float(part['nominal_pressure']), 'Pa')}"

@@ -29,10 +29,14 @@ from sonolube.rig import (
     quantity_of_axis,
     require_commanded,
 )
-from sonolube.rig.operating_conditions import POWERS
+from sonolube.rig.datasets import labels as labels_of
+from sonolube.rig.power import POWERS, FiguredPower
 
 if TYPE_CHECKING:
     import xarray as xr
+
+
+_MAP_POWERS = ("power_to_supply", "charging_power")  # coordinates of a map under a voltage
 
 
 def velocity_stress_map(
@@ -43,6 +47,7 @@ def velocity_stress_map(
     voltage_peak_to_peak: ArrayLike | None = None,
     vibration_amplitude: ArrayLike | None = None,
     backend: Backend = "cpu",
+    power: FiguredPower = "power_to_supply",
 ) -> "xr.Dataset":
     """Friction reduction over sliding speed and nominal stress, for several drive voltages or amplitudes.
 
@@ -60,12 +65,15 @@ def velocity_stress_map(
         Amplitudes of a rig without a drive voltage, one per panel. [m]
     backend : {"cpu", "gpu"}
         Whether JAX computes the vibrations on its GPU; its name is then the attribute `device`.
+    power : {"power_to_supply", "charging_power"}
+        Power that stands beside a voltage in figures; the charge of the capacitance alone is D 1.9's.
 
     Returns
     -------
     xarray.Dataset
         Over `voltage_peak_to_peak` or `vibration_amplitude`, `normal_load` and `sliding_speed`, with the coordinate
-        `nominal_pressure`, and `actuator_power` of the voltages.
+        `nominal_pressure`; of voltages also with `power_to_supply` and
+        `charging_power`.
 
     Raises
     ------
@@ -91,7 +99,7 @@ def velocity_stress_map(
     if len(panels) != 1:
         raise InvalidInput("a velocity-stress map needs either voltage_peak_to_peak or vibration_amplitude")
     return _computed_map(
-        rig, "velocity-stress", backend, **panels, normal_load=normal_load, sliding_speed=sliding_speed
+        rig, "velocity-stress", backend, power=power, **panels, normal_load=normal_load, sliding_speed=sliding_speed
     )
 
 
@@ -149,8 +157,9 @@ def velocity_power_map(
     voltage_peak_to_peak: ArrayLike,
     normal_load: ArrayLike,
     backend: Backend = "cpu",
+    power: FiguredPower = "power_to_supply",
 ) -> "xr.Dataset":
-    """Friction reduction over sliding speed and amplifier power, for several normal loads, with the saturation power.
+    """Friction reduction over sliding speed and power, for several normal loads, with the saturation power.
 
     Parameters
     ----------
@@ -164,13 +173,16 @@ def velocity_power_map(
         Forces pressing the bodies together, one per panel; the structure is kept. [N]
     backend : {"cpu", "gpu"}
         Whether JAX computes the vibrations on its GPU; its name is then the attribute `device`.
+    power : {"power_to_supply", "charging_power"}
+        Power that the map is over; the charge of the capacitance alone is D 1.9's.
 
     Returns
     -------
     xarray.Dataset
-        Over `normal_load`, `voltage_peak_to_peak` and `sliding_speed`, with the coordinates `actuator_power` and
-        `nominal_pressure`. `saturation_power` holds, for each load and speed, the power beyond which doubling it
-        reduces friction by no more than another 0.05; NaN where that exceeds half of the highest power of the map.
+        Over `normal_load`, `voltage_peak_to_peak` and `sliding_speed`, with the coordinates `power_to_supply` and
+        `charging_power` of each load and voltage, and `nominal_pressure`. `saturation_power` holds, for each load and
+        speed, the power beyond which doubling it reduces friction by no more than another 0.05; NaN where that exceeds
+        half of the highest power of the map.
 
     Raises
     ------
@@ -194,12 +206,17 @@ def velocity_power_map(
         rig,
         "velocity-power",
         backend,
+        power=power,
         normal_load=normal_load,
         voltage_peak_to_peak=voltage_peak_to_peak,
         sliding_speed=sliding_speed,
     )
-    power, reduction = computed["actuator_power"].values, computed["friction_reduction"].values
-    saturation = saturation_power(friction_reduction=np.moveaxis(reduction, 1, -1), actuator_power=power)
+    reduction = np.moveaxis(computed["friction_reduction"].values, 1, -1)
+    saturation = [
+        saturation_power(friction_reduction=of_load[:, order], actuator_power=watts[order])
+        for of_load, watts in zip(reduction, computed[power].values, strict=True)
+        for order in [np.argsort(watts)]
+    ]
     labels = {"units": "W", "long_name": "Power beyond which doubling it reduces friction by no more than another 0.05"}
     return computed.assign(saturation_power=(("normal_load", "sliding_speed"), saturation, labels))
 
@@ -223,7 +240,7 @@ def frequency_voltage_map(
     Returns
     -------
     xarray.Dataset
-        Over `voltage_peak_to_peak` and `frequency`, with the coordinate `actuator_power`.
+        Over `voltage_peak_to_peak` and `frequency`, with the coordinates `power_to_supply` and `charging_power`.
 
     Raises
     ------
@@ -279,7 +296,9 @@ def frequency_amplitude_map(
     )
 
 
-def _computed_map(rig: Rig, kind: str, backend: Backend, **axes: ArrayLike) -> "xr.Dataset":
+def _computed_map(
+    rig: Rig, kind: str, backend: Backend, *, power: FiguredPower = "power_to_supply", **axes: ArrayLike
+) -> "xr.Dataset":
     """Operating points on the grid of some axes as a dataset, with nominal pressure and, under a voltage, its power."""
     quantity = quantity_of_axis(axes)
     require_commanded(rig, quantity)
@@ -295,7 +314,7 @@ def _computed_map(rig: Rig, kind: str, backend: Backend, **axes: ArrayLike) -> "
     mesh: dict[str, Any] = dict(zip(values, np.meshgrid(*values.values(), indexing="ij"), strict=True))
     settings = level_settings(rig, mesh.pop(quantity.name))
     points = point_batch(rig, **mesh, **settings, backend=backend)
-    left_out = (*values, "actuator_power") if quantity is VOLTAGE else (*values, *POWERS)
+    left_out = (*values, *_MAP_POWERS) if quantity is VOLTAGE else (*values, *POWERS)
     columns: dict[str, NDArray[Any]] = {
         name: points.numbers[name].reshape(shape) for name in NUMBERS if name not in left_out
     }
@@ -305,6 +324,7 @@ def _computed_map(rig: Rig, kind: str, backend: Backend, **axes: ArrayLike) -> "
         {"result": "map", "rig": rig.title, "map": kind}
         | amplitude_labels(rig)
         | ({"device": device_name(backend)} if backend == "gpu" else {})
+        | ({"power": power} if quantity is VOLTAGE else {})
     )
     computed = gridded(columns, axes=values, title=f"Friction reduction, {rig.title}", about=about)
     if "normal_load" in values:
@@ -313,23 +333,22 @@ def _computed_map(rig: Rig, kind: str, backend: Backend, **axes: ArrayLike) -> "
         computed = computed.assign_coords(nominal_pressure=("normal_load", pressure, labels))
     if quantity is AMPLITUDE:
         return computed
-    return _with_power(rig, computed, points.numbers["actuator_power"].reshape(shape))
+    return _with_powers(rig, computed, {name: points.numbers[name].reshape(shape) for name in _MAP_POWERS})
 
 
-def _with_power(rig: Rig, computed: "xr.Dataset", power: Floats) -> "xr.Dataset":
-    """Map with the amplifier power of its points, or of its voltages where only they change it."""
-    labels = {"units": "W", "long_name": "Power of a linear amplifier, D 1.9"}
+def _with_powers(rig: Rig, computed: "xr.Dataset", powers: Mapping[str, Floats]) -> "xr.Dataset":
+    """Map with the power to supply and its charging part over the axes that change them, all but the speed."""
     dims = [str(name) for name in computed["status"].dims]
-    if "frequency" in dims:
-        return computed.assign_coords(actuator_power=(dims, power, labels))
-    if not np.any(np.isfinite(power)):
+    if "frequency" not in dims and not any(np.any(np.isfinite(power)) for power in powers.values()):
         raise InvalidInput(
             f"{rig.title}: no voltage has a power, which this map is over: actuator.capacitance is missing; give it, or"
             " map frequency-voltage"
         )
-    voltage_axis = dims.index("voltage_peak_to_peak")
-    power_by_voltage = np.moveaxis(power, voltage_axis, 0).reshape(power.shape[voltage_axis], -1)[:, 0]
-    return computed.assign_coords(actuator_power=("voltage_peak_to_peak", power_by_voltage, labels))
+    if "sliding_speed" in dims:
+        at = dims.index("sliding_speed")
+        dims.pop(at)
+        powers = {name: np.take(power, 0, axis=at) for name, power in powers.items()}
+    return computed.assign_coords({name: (dims, power, labels_of(name)) for name, power in powers.items()})
 
 
 MAPS: Mapping[str, Callable[..., "xr.Dataset"]] = MappingProxyType(

@@ -172,7 +172,8 @@ def _negative_log_likelihood(logs: Floats, x: Floats, z: Floats, noise: Floats) 
     return float(0.5 * residual @ cho_solve(factor, residual) + np.sum(np.log(np.diag(factor[0]))))
 
 
-_STAND_INS = {"actuator_power": "voltage_peak_to_peak"}  # that give an axis
+_POWER = "actuator_power"  # column of the measured power
+_STAND_INS = {"power_to_supply": (_POWER, "voltage_peak_to_peak")}  # columns that give an axis
 _BY_THE_RIG = ("nominal_pressure",)  # axes that a rig gives where no column does
 _GRID_POINTS = 61  # of the interpolated map along each axis
 _MATCH = 1e-3  # relative difference of a load or voltage below which a run belongs to a panel as it is
@@ -184,8 +185,9 @@ def require_mappable(runs: "xr.Dataset", *, kind: str, commanded: CommandedQuant
     across, up, panel = MAP_LAYOUTS[kind]
     panel = commanded.name if panel == VOLTAGE.name else panel
     for axis in (across, up):
-        if axis not in runs and _STAND_INS.get(axis) not in runs and axis not in _BY_THE_RIG:
-            raise InvalidInput(f"measured runs need a column {axis} for a {kind} map")
+        columns = _STAND_INS.get(axis, (axis,))
+        if axis not in _BY_THE_RIG and not any(column in runs for column in columns):
+            raise InvalidInput(f"measured runs need a column {columns[0]} for a {kind} map")
     several = panel is not None and panel in runs and np.unique(runs[panel].values).size > 1
     if several and runs.sizes["run"] >= MIN_RUNS:
         raise InvalidInput(f"measured runs at several values of {panel} make several maps: give one file to each")
@@ -199,16 +201,25 @@ def runs_on_map(runs: "xr.Dataset", rig: Rig, computed: "xr.Dataset") -> tuple["
     (`is_moved`).
     """
     across, up, _ = map_layout(computed)
-    if up == "actuator_power":
-        voltage = setting(runs, "voltage_peak_to_peak", np.nan)
-        power = np.interp(voltage, computed["voltage_peak_to_peak"], computed[up], left=np.nan, right=np.nan)
-        runs = runs.assign({up: ("run", setting(runs, up, power))})
+    if MAP_LAYOUTS[computed.attrs["map"]][1] == "power_to_supply":
+        runs = runs.assign({up: ("run", setting(runs, _POWER, _power_of_voltage(runs, rig, computed[up])))})
     if up == "nominal_pressure":
         pressure = setting(runs, "normal_load", rig.normal_load) / rig.contact.nominal_area
         runs = runs.assign({up: ("run", setting(runs, up, pressure))})
     placed, skipped = with_columns(runs, across, up)
     shown, beyond = _on_panels(placed, rig, computed)
     return shown, (*run_caveats(runs), *skipped, *beyond)
+
+
+def _power_of_voltage(runs: "xr.Dataset", rig: Rig, power: "xr.DataArray") -> Floats:
+    """Power of a map, over load and voltage, at the voltage of each run and the load next to its own; NaN beyond it."""
+    load, voltage = setting(runs, "normal_load", rig.normal_load), setting(runs, "voltage_peak_to_peak", np.nan)
+    volts, watts = power["voltage_peak_to_peak"].values, power.transpose("normal_load", ...).values
+    panel = np.argmin(np.abs(power["normal_load"].values - load[:, np.newaxis]), axis=1)
+    found = [
+        np.interp(at, volts, watts[place], left=np.nan, right=np.nan) for at, place in zip(voltage, panel, strict=True)
+    ]
+    return np.array(found)
 
 
 def _on_panels(runs: "xr.Dataset", rig: Rig, computed: "xr.Dataset") -> tuple["xr.Dataset", tuple[str, ...]]:
@@ -255,10 +266,27 @@ def _model(computed: "xr.Dataset", runs: "xr.Dataset", at: Floats) -> Floats:
     assert panel is not None
     if computed.sizes[panel] < 2:
         return np.full(at.size, np.nan)
-    values = computed["friction_reduction"].transpose(panel, computed[up].dims[0], computed[across].dims[0]).values
-    axes = tuple(computed[name].values for name in (panel, up, across))
+    along = next(name for name in computed[up].dims if name != panel)
+    values = computed["friction_reduction"].transpose(panel, along, computed[across].dims[0]).values
+    height = computed[up].values
+    if panel in computed[up].dims:
+        height, values = _on_one_axis(computed[up].transpose(panel, along).values, values)
+    axes = (computed[panel].values, height, computed[across].values)
     interpolated = RegularGridInterpolator(axes, values, bounds_error=False)
     return np.asarray(interpolated(np.stack([at, runs[up].values, runs[across].values], axis=1)), float)
+
+
+def _on_one_axis(heights: Floats, values: Floats) -> tuple[Floats, Floats]:
+    """Vertical axis that all panels, rows of `heights`, have, and the values of each panel along it."""
+    order = np.argsort(heights, axis=1)
+    heights = np.take_along_axis(heights, order, axis=1)
+    values = np.take_along_axis(values, order[..., np.newaxis], axis=1)
+    common = np.linspace(heights[:, 0].max(), heights[:, -1].min(), heights.shape[1])
+    along = [
+        np.stack([np.interp(common, height, column) for column in panel.T], axis=-1)
+        for height, panel in zip(heights, values, strict=True)
+    ]
+    return common, np.stack(along)
 
 
 def runs_map(runs: "xr.Dataset", *, kind: str) -> "xr.Dataset | None":

@@ -67,7 +67,7 @@ _OUTCOME_LABEL = "Friction ratio, with over without vibration"
 _LABELS = {
     _OUTCOME: "Friction ratio",
     "vibration_amplitude": "Amplitude",
-    "actuator_power": "Power of the amplifier",
+    "power_to_supply": "Power to supply",
     "dissipated_power": "Power dissipated",
 }
 _MAX_SAMPLED = 50_000  # points from which quantiles are computed

@@ -15,6 +15,7 @@ from sonolube.prediction.within_plane import NO_WEAR, RIGID_MODEL, tested_words
 from sonolube.rig import Rig
 from sonolube.rig.datasets import LabelledArray, LabelledArrays
 from sonolube.rig.friction_and_wear import direction_caveats
+from sonolube.rig.power import POWERS, power_text
 from sonolube.rig.resolved_rig import resolved_rig
 
 if TYPE_CHECKING:
@@ -109,8 +110,9 @@ def prediction_attributes(
     }
     if not rig.direction.is_normal:
         attributes["tested"] = tested_words(rig.direction)
-    if point.actuator_power is not None:
-        attributes["actuator_power"] = point.actuator_power
+    if point.power is not None:
+        attributes |= {name: value for name in POWERS if (value := getattr(point.power, name)) is not None}
+        attributes["power_is_at_least"] = int(point.power.is_at_least)
     if np.isfinite(point.friction_ratio):
         attributes["friction_ratio_by_the_rigs_model"] = point.friction_ratio
         attributes["friction_model"] = point.friction_model
@@ -159,9 +161,10 @@ def _limits(prediction: "xr.Dataset | LabelledArrays") -> str:
         parts.append(f"Heat of friction {'limits' if high > _HOT else 'does not limit'}: at most {high:.2g} K (80 %)")
     else:
         parts.append(f"Heat is not computed: {prediction.attrs['heat']}")
-    power = prediction.attrs.get("actuator_power")
+    power = prediction.attrs.get("power_to_supply")
     unknown = "power is not known: capacitance or voltage is missing"
-    parts.append(unknown if power is None else f"the amplifier supplies {power:.3g} W")
+    supplied = "" if power is None else power_text(power, is_at_least=bool(prediction.attrs["power_is_at_least"]))
+    parts.append(f"the amplifier has to supply {supplied}" if supplied else unknown)
     return "; ".join(parts) + "."
 
 

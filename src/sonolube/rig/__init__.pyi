@@ -6,7 +6,6 @@ from .contact_temperature import (
 )
 from .datasets import dataset as dataset, gridded as gridded, write_netcdf as write_netcdf
 from .distribution import Distribution as Distribution, LogNormal as LogNormal, Normal as Normal, Uniform as Uniform
-from .driven_rig import energy_balance as energy_balance
 from .figures import STUDY_CHARTS as STUDY_CHARTS
 from .file.reader import (
     read_rig as read_rig,
@@ -65,6 +64,12 @@ from .parametric_study import (
     speed_study as speed_study,
     voltage_study as voltage_study,
     waveform_study as waveform_study,
+)
+from .power import (
+    FiguredPower as FiguredPower,
+    PowerToSupply as PowerToSupply,
+    larger_power as larger_power,
+    power_to_supply as power_to_supply,
 )
 from .record import (
     AMPLITUDE_SOURCES as AMPLITUDE_SOURCES,

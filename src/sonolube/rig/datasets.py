@@ -249,6 +249,9 @@ def _flat(record: Any) -> dict[str, Any]:
     """Fields of a record by name, and those of records within it; of one name the outermost."""
     own = {each.name: getattr(record, each.name) for each in fields(record)}
     values: dict[str, Any] = {}
-    for value in own.values():
-        values |= _flat(value) if is_dataclass(value) else {}
-    return values | {name: value for name, value in own.items() if not is_dataclass(value)}
+    for name, value in own.items():
+        if is_dataclass(value):
+            values |= {key: inner for key, inner in _flat(value).items() if key not in own}
+        else:
+            values[name] = value
+    return values

@@ -1,11 +1,10 @@
 """Driven rig, whose stack, structure and drive voltage are known, so that its motion can be computed; its excitation.
 
-Of the drive voltage: waveform, harmonics, extremes, power of the amplifier and its balance.
+Of the drive voltage: waveform, harmonics, extremes, and the charge of a capacitance from a linear amplifier.
 """
 
 from dataclasses import dataclass, fields
 from functools import cached_property
-from math import isfinite
 from typing import final
 
 import numpy as np
@@ -18,7 +17,6 @@ from sonolube.models.actuator.drive import Drive, linear_amplifier_power
 from sonolube.models.dynamics import WAVEFORMS, Sine, Structure, Waveform
 from sonolube.models.dynamics.waveform import fourier_coefficients, sampled_waveform, waveform_extremes
 from sonolube.rig.record import Rig
-from sonolube.text.units import format_si
 
 
 @final
@@ -130,7 +128,7 @@ class DriveVoltage:
         swing, (lowest, highest) = self._swing(voltage_peak_to_peak), self._extremes_per_volt
         return offset + swing * lowest, offset + swing * highest
 
-    def amplifier_power(
+    def charging_power(
         self,
         *,
         capacitance: float,
@@ -138,7 +136,7 @@ class DriveVoltage:
         voltage_offset: ArrayLike | None = None,
         frequency: ArrayLike | None = None,
     ) -> Floats:
-        """Power that a linear amplifier supplies to a capacitance, its rail at the highest voltage, D 1.9. [W]"""
+        """Charge of a capacitance from a linear amplifier, its rail at the highest voltage, D 1.9. [W]"""
         lowest, highest = self.range(voltage_peak_to_peak=voltage_peak_to_peak, voltage_offset=voltage_offset)
         return linear_amplifier_power(
             capacitance=capacitance,
@@ -165,33 +163,3 @@ def voltage_harmonics(waveform: Waveform) -> Complexes:
 def actuator_capacitance(rig: Rig) -> float | None:
     """Capacitance that an amplifier drives: that of the stack, else of the actuator. [F]"""
     return rig.capacitance if rig.stack is None else rig.stack.free_capacitance
-
-
-def energy_balance(*, actuator_power: float | None, dissipated_power: float | None) -> str | None:
-    """Comparison of the power of the amplifier with the dissipated power, and its reason, in one line.
-
-    Parameters
-    ----------
-    actuator_power : float or None
-        That a linear amplifier supplies, D 1.9; None or NaN where it is not known. [W]
-    dissipated_power : float or None
-        That the computed motion turns into heat; None or NaN where no structure gives it. [W]
-
-    Returns
-    -------
-    str or None
-        None where only the dissipated power is known.
-    """
-    if dissipated_power is None or not isfinite(dissipated_power):
-        return NO_DISSIPATED_POWER
-    if actuator_power is None or not isfinite(actuator_power):
-        return None
-    supplied, dissipated = actuator_power, dissipated_power
-    capacitive, motional = format_si(supplied, "W"), format_si(dissipated, "W")
-    which = (
-        f"{capacitive} charges the actuator's capacitance alone, from the supply of a linear amplifier (D 1.9);"
-        f" {motional} is what the computed motion turns into heat in stack, dampers and contact"
-    )
-    if dissipated <= supplied:
-        return which
-    return f"{which}: D 1.9 leaves the current of the motion out, so that the amplifier must supply the larger"

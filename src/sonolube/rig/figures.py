@@ -11,6 +11,7 @@ from sonolube.checks import Floats
 from sonolube.models.friction import LubricationMethod
 from sonolube.rig.datasets import Dataset
 from sonolube.rig.operating_conditions import CommandedQuantity, quantity_of_axis
+from sonolube.rig.power import FiguredPower
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -161,6 +162,9 @@ def lubrication_chart(rig: "Rig", result: "LubricationPoint", surroundings: "Lub
 
 
 _PERIODS = 4  # voltages or amplitudes of which a period is drawn
+_POWER_LABELS: Mapping[FiguredPower, str] = MappingProxyType(
+    {"power_to_supply": "Power to supply", "charging_power": "Power of the\namplifier, D 1.9"}
+)
 _RATIO = Axis(label="Friction ratio", lowest=0.0)
 _FREQUENCY = Axis(label="Drive frequency", unit="kHz", logarithmic=True)
 _PERIOD = Axis(label="Time over the period")
@@ -204,24 +208,24 @@ def speed_chart(study: Dataset) -> Chart:
     return Chart(panels=panels, size=(7.2, 3.4), columns=2, legend="top", legend_columns=6, shares_y=True)
 
 
-def frequency_chart(study: Dataset) -> Chart:
-    """Amplitude and friction ratio over frequency, and friction ratio over the power of the amplifier."""
+def frequency_chart(study: Dataset, *, power: FiguredPower = "power_to_supply") -> Chart:
+    """Amplitude and friction ratio over frequency, and friction ratio over power."""
     tips = [
-        (float(curve["actuator_power"][best]), float(curve["friction_ratio"][best]))
+        (float(curve[power][best]), float(curve["friction_ratio"][best]))
         for curve in _curves(study)
         if (best := _best(curve["friction_ratio"].values)) is not None
     ]
-    over_power = _family(study, "actuator_power", "friction_ratio")
+    over_power = _family(study, power, "friction_ratio")
     if len(tips) > 1:
         x, y = np.array(tips).T
         over_power = (*over_power, Points(x=x, y=y, colour="0", is_hollow=True, label="tips"))
     amplitude = Axis(label="Vibration amplitude", unit="µm", logarithmic=True)
-    power = Axis(label="Power of the\namplifier, D 1.9", unit="W", logarithmic=True)
+    watts = Axis(label=_POWER_LABELS[power], unit="W", logarithmic=True)
     return Chart(
         panels=(
             Panel(x=_FREQUENCY, y=amplitude, parts=_family(study, "frequency", "vibration_amplitude", 1e-3, 1e6)),
             Panel(x=_FREQUENCY, y=_RATIO, parts=_family(study, "frequency", "friction_ratio", 1e-3)),
-            Panel(x=power, y=_RATIO, parts=over_power),
+            Panel(x=watts, y=_RATIO, parts=over_power),
         ),
         size=(6.85, 2.9),
         columns=3,
@@ -230,11 +234,15 @@ def frequency_chart(study: Dataset) -> Chart:
     )
 
 
-def power_chart(study: Dataset) -> Chart:
-    """Voltage and the power that one friction ratio takes over frequency."""
+def power_chart(study: Dataset, *, power: FiguredPower = "power_to_supply") -> Chart:
+    """Voltage and power that one friction ratio takes over frequency, the power to supply with both of its parts."""
     kilohertz = 1e-3 * study["frequency"].values
+    is_whole = power == "power_to_supply"
+    whole = Line(x=kilohertz, y=study["power_to_supply"].values, label="to supply", colour="0.7", weight=3.0)
+    of_charge = "charge of the capacitance, D 1.9" if is_whole else "amplifier, D 1.9"
     watts = (
-        Line(x=kilohertz, y=study["actuator_power"].values, label="amplifier, D 1.9"),
+        *((whole,) if is_whole else ()),
+        Line(x=kilohertz, y=study["charging_power"].values, label=of_charge),
         Line(x=kilohertz, y=study["dissipated_power"].values, dash=1, colour=1, label="stays in rig and contact"),
     )
     x = Axis(label="Drive frequency", unit="kHz")

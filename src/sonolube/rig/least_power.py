@@ -6,6 +6,7 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats, require_positive, require_within
 from sonolube.rig.datasets import Dataset, gridded
 from sonolube.rig.operating_point_grid import Advance, OperatingPoints, operating_points
+from sonolube.rig.power import POWERS
 from sonolube.rig.record import Rig
 from sonolube.rig.resolved_rig import ResolvedRig, amplitude_labels, resolved_rig
 
@@ -73,13 +74,7 @@ def least_power_study(
     missed, reached = ~reached & ~top.failed, reached & ~found.failed
     numbers = {
         name: np.where(reached, getattr(found, name), np.nan)
-        for name in (
-            "voltage_peak_to_peak",
-            "friction_ratio",
-            "vibration_amplitude",
-            "actuator_power",
-            "dissipated_power",
-        )
+        for name in ("voltage_peak_to_peak", "friction_ratio", "vibration_amplitude", *POWERS)
     }
     status, reason = found.status.astype(object), found.reason.astype(object)
     status[missed] = OUT_OF_REACH

@@ -3,7 +3,7 @@
 Voltage sets it, or else amplitude; vibrations are those of a structure, in one batch, or sines.
 """
 
-from collections.abc import Callable, Collection, Hashable, Sequence
+from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Literal
 
@@ -21,6 +21,7 @@ from sonolube.models.dynamics.backend import Backend
 from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE
 from sonolube.rig.driven_rig import NO_DISSIPATED_POWER, require_drive
 from sonolube.rig.friction_and_wear import ANY_FREQUENCY, prescribed_sine
+from sonolube.rig.power import electrical_load
 from sonolube.rig.record import Rig
 from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
 from sonolube.rig.vibration import contact_loss_fraction, gap_motion
@@ -89,10 +90,6 @@ AMPLITUDE: Final = CommandedQuantity(
     axis_scale=1e6,
 )
 """Amplitude of a sine normal to the contact, zero to peak."""
-
-
-POWERS: Final = ("actuator_power", "dissipated_power")
-"""Numbers of a point that a rig without a voltage does not have."""
 
 
 def commanded_quantity(rig: Rig | ResolvedRig) -> CommandedQuantity:
@@ -262,7 +259,7 @@ class PointVibration:
     status: str
     reason: str
     motion: ContactMotion | None = None
-    numbers: tuple[float, ...] = (np.nan,) * 6  # five of the vibration, and whether the gap closes
+    numbers: tuple[float, ...] = (np.nan,) * 8  # seven of the vibration, and whether the gap closes
 
 
 VibrationAt = Callable[[int], PointVibration]
@@ -299,17 +296,19 @@ def computed_vibrations(resolved: ResolvedRig, distinct: Floats, backend: Backen
     states = None
     if possible.any():
         states = steady_states_of(resolved, distinct[:, possible], rest[possible], backend)
+    load = {} if states is None else electrical_load(states)
     place = np.cumsum(possible) - 1
 
     def vibration_at(setting: int) -> PointVibration:
         if states is None or not possible[setting]:
             return PointVibration(status=REFUSED, reason=refusals[setting])
-        return _of_state(states, int(place[setting]))
+        return _of_state(states, load, int(place[setting]))
 
     return vibration_at
 
 
-def _of_state(states: SteadyStates, point: int) -> PointVibration:
+def _of_state(states: SteadyStates, load: Mapping[str, Floats], point: int) -> PointVibration:
+    """Vibration of a point of a batch, with the electrical load of the batch."""
     known, reason = Status(int(states.status[point])), states.reason(point)
     if known is Status.NOT_CONVERGED:
         return PointVibration(status=known.name.lower(), reason=reason)
@@ -320,6 +319,7 @@ def _of_state(states: SteadyStates, point: int) -> PointVibration:
         states.mean_displacement[point],
         states.contact_loss_fraction[point],
         states.dissipated_power[point],
+        *(float(values[point]) for values in load.values()),
         states.gap_closed[point],
     )
     return PointVibration(status=known.name.lower(), reason=reason, motion=motion, numbers=numbers)
@@ -350,7 +350,7 @@ def stated_vibrations(resolved: ResolvedRig, distinct: Floats, *, commanded: boo
             2 * np.pi * f * amplitude,
             float(motion.displacement.mean()),
             contact_loss_fraction(motion),
-            np.nan,
+            *(np.nan,) * 3,  # powers and current
             float(motion.displacement.min() <= -rest),
         )
         return PointVibration(

@@ -6,6 +6,7 @@ from typing import TypedDict
 from sonolube.models.contact.rough import contact_count, normal_stiffness, real_contact_area
 from sonolube.models.contact.tangential_stiffness import DEFAULT_TANGENTIAL_STIFFNESS, TANGENTIAL_STIFFNESSES
 from sonolube.rig.friction_and_wear import resting_caveats
+from sonolube.rig.power import PowerToSupply
 from sonolube.rig.record import AmplitudeSource, Rig
 from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
 
@@ -91,8 +92,8 @@ class FrictionPoint:
         Where the amplitude comes from.
     amplitude_origin : str
         The same in words, with the numbers behind it.
-    actuator_power : float or None
-        Power a linear amplifier supplies, D 1.9, where drive and capacitance are known. [W]
+    power : PowerToSupply or None
+        Power that the amplifier has to supply, with its parts; None where voltage and capacitance are not known.
     caveats : tuple of str
         Reasons for caution about the numbers, one line each.
     """
@@ -110,7 +111,7 @@ class FrictionPoint:
     vibration_amplitude: float
     amplitude_source: AmplitudeSource
     amplitude_origin: str
-    actuator_power: float | None
+    power: PowerToSupply | None
     caveats: tuple[str, ...]
 
 

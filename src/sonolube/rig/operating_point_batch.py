@@ -16,6 +16,7 @@ from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE, Che
 from sonolube.rig import operating_conditions as conditions, operating_point_grid as grid
 from sonolube.rig.friction_and_wear import friction_at_speeds
 from sonolube.rig.operating_conditions import REFUSED, steady_states_of
+from sonolube.rig.power import POWERS, electrical_load
 from sonolube.rig.record import Rig
 from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
 from sonolube.rig.vibration import gap_motion
@@ -33,8 +34,7 @@ NUMBERS = (
     "vibration_velocity",
     "mean_displacement",
     "contact_loss_fraction",
-    "actuator_power",
-    "dissipated_power",
+    *POWERS,
 )
 """Numbers of an operating point, the columns of a batch."""
 
@@ -142,7 +142,7 @@ def point_batch(
     rest = separation(rig.contact, normal_load=distinct[-1])
     refusal, reasons = _refusals(resolved, distinct, rest)
     status, reason = np.full(first.size, _REFUSED, dtype=np.int8), refusal.copy()
-    numbers = np.full((5, first.size), np.nan)
+    numbers = np.full((len(grid.VIBRATION_NUMBERS), first.size), np.nan)
     friction = _no_friction(speeds.size)
     possible = np.flatnonzero(refusal == 0)
     if possible.size:
@@ -160,10 +160,11 @@ def point_batch(
         point_status[members] = STATUSES.index(grid.friction_status(str(text)))
         point_reason[members] = len(reasons)
         reasons = (*reasons, str(text))
-    found = grid.friction_and_power(
+    found = grid.friction_of(
         resolved, columns, friction_ratio=friction.friction_ratio, raw_friction_ratio=friction.raw_friction_ratio
     )
     found |= dict(zip(grid.VIBRATION_NUMBERS, numbers[:, which], strict=True))
+    found |= grid.supplied_power(resolved, columns, dissipated_power=found["dissipated_power"])
     return PointBatch(
         numbers={name: found[name] for name in NUMBERS}, status=point_status, reason=point_reason, reasons=reasons
     )
@@ -221,9 +222,8 @@ def _measures(states: SteadyStates) -> Floats:
     of_points = peak_velocities.for_points(velocity.size, at_first=_FEW)
     of_points(2 * np.pi * states.frequency, states.harmonics, velocity)
     velocity[states.status == Status.NOT_CONVERGED] = np.nan
-    return np.stack(
-        [velocity if name == "vibration_velocity" else getattr(states, name) for name in grid.VIBRATION_NUMBERS]
-    )
+    apart = {"vibration_velocity": velocity, **electrical_load(states)}
+    return np.stack([apart[name] if name in apart else getattr(states, name) for name in grid.VIBRATION_NUMBERS])
 
 
 def _no_friction(count: int) -> CheckedRatio:

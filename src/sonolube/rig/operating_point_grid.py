@@ -21,6 +21,7 @@ from sonolube.rig.operating_conditions import (
     stated_vibrations,
     steady_states_of,
 )
+from sonolube.rig.power import larger_power
 from sonolube.rig.record import AmplitudeSource, Rig
 from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
 
@@ -30,6 +31,8 @@ VIBRATION_NUMBERS = (
     "mean_displacement",
     "contact_loss_fraction",
     "dissipated_power",
+    "apparent_power",
+    "peak_current",
 )
 """Numbers of the vibration of a point."""
 
@@ -78,10 +81,16 @@ class OperatingPoints:
         Mean friction force over the normal load. []
     friction_force : ndarray
         Mean friction force with vibration. [N]
-    actuator_power : ndarray
-        Power a linear amplifier supplies, D 1.9. [W]
+    power_to_supply : ndarray
+        Power that the amplifier has to supply, the larger of the two below, at least that which is known. [W]
+    charging_power : ndarray
+        Charge of the capacitance from the supply of a linear amplifier, D 1.9. [W]
     dissipated_power : ndarray
         Mean electrical power that stays in stack, dampers and contact; NaN for a sine, whose `reason` says so. [W]
+    apparent_power : ndarray
+        Root-mean-square voltage times root-mean-square current; NaN for a sine. [W]
+    peak_current : ndarray
+        Greatest magnitude of that current; NaN for a sine. [A]
     gap_closed : ndarray of bool
         Whether the mean planes touch within the period, where the contact model no longer holds.
     amplitude_source : {"measured", "computed", "waveguide", "per-volt"}
@@ -106,8 +115,11 @@ class OperatingPoints:
     friction_reduction: Floats
     friction_coefficient: Floats
     friction_force: Floats
-    actuator_power: Floats
+    power_to_supply: Floats
+    charging_power: Floats
     dissipated_power: Floats
+    apparent_power: Floats
+    peak_current: Floats
     gap_closed: NDArray[np.bool_]
     amplitude_source: AmplitudeSource
     amplitude_origin: str
@@ -186,13 +198,13 @@ def operating_points(
         vibration_at = computed_vibrations(resolved, distinct, backend)
 
     status, reason = np.full((2, speeds.size), REFUSED, dtype=object)
-    numbers = np.full((8, speeds.size), np.nan)
+    numbers = np.full((len(VIBRATION_NUMBERS) + 3, speeds.size), np.nan)
     for setting, members in enumerate(points_by_vibration(np.arange(speeds.size), which.ravel())):
         vibration = vibration_at(setting)
         status[members], reason[members] = vibration.status, vibration.reason
         if vibration.motion is not None:
             found = friction_at_speeds(rig, vibration.motion, speeds[members])
-            numbers[:-2, members] = np.reshape(vibration.numbers, (6, 1))
+            numbers[:-2, members] = np.reshape(vibration.numbers, (-1, 1))
             numbers[-2:, members] = found.friction_ratio, found.raw_friction_ratio
             status[members] = [friction_status(objection) or vibration.status for objection in found.reason]
             reason[members] = [objection or vibration.reason for objection in found.reason]
@@ -201,35 +213,43 @@ def operating_points(
     columns = columns.reshape(4, *shape)
     if commanded:
         columns[0] = 0.0  # without a voltage
-    *of_vibration, closed, ratio, raw = numbers.reshape(8, *shape)
+    *found_vibration, closed, ratio, raw = numbers.reshape(-1, *shape)
+    of_vibration = dict(zip(VIBRATION_NUMBERS, found_vibration, strict=True))
     return OperatingPoints(
         **dict(zip(CONDITIONS, columns, strict=True)),
         sliding_speed=speeds.reshape(shape),
         status=status.astype(np.str_).reshape(shape),
         reason=reason.astype(np.str_).reshape(shape),
-        **dict(zip(VIBRATION_NUMBERS, of_vibration, strict=True)),
-        **friction_and_power(resolved, columns, friction_ratio=ratio, raw_friction_ratio=raw),
+        **of_vibration,
+        **friction_of(resolved, columns, friction_ratio=ratio, raw_friction_ratio=raw),
+        **supplied_power(resolved, columns, dissipated_power=of_vibration["dissipated_power"]),
         gap_closed=closed == 1,
         amplitude_source=used.source,
         amplitude_origin=used.text,
     )
 
 
-def friction_and_power(
+def friction_of(
     resolved: ResolvedRig, columns: Floats, *, friction_ratio: Floats, raw_friction_ratio: Floats
 ) -> dict[str, Floats]:
-    """Friction force, coefficient, reduction and amplifier power from friction ratio and settings, by name."""
-    u, offset, f, load = columns
-    coefficient = resolved.rig.friction_coefficient
-    power = resolved.amplifier_power(voltage_peak_to_peak=u, voltage_offset=offset, frequency=f)
+    """Friction force, coefficient and reduction from friction ratio and settings, by name."""
+    load, coefficient = columns[-1], resolved.rig.friction_coefficient
     return {
         "friction_ratio": friction_ratio,
         "raw_friction_ratio": raw_friction_ratio,
         "friction_reduction": 1 - friction_ratio,
         "friction_coefficient": friction_ratio * coefficient,
         "friction_force": friction_ratio * coefficient * load,
-        "actuator_power": np.full(u.shape, np.nan) if power is None else power,
     }
+
+
+def supplied_power(resolved: ResolvedRig, columns: Floats, *, dissipated_power: Floats) -> dict[str, Floats]:
+    """Power to supply and the charge of the capacitance from settings and heat of the motion, by name."""
+    u, offset, f, _ = columns
+    known = resolved.charging_power(voltage_peak_to_peak=u, voltage_offset=offset, frequency=f)
+    charge = np.full(u.shape, np.nan) if known is None else known
+    larger = larger_power(charging_power=charge, dissipated_power=dissipated_power)
+    return {"power_to_supply": larger, "charging_power": charge}
 
 
 def steady_states(

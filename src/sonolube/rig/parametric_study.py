@@ -16,6 +16,7 @@ from sonolube.rig.driven_rig import DrivenRig, require_drive
 from sonolube.rig.friction_and_wear import prescribed_sine
 from sonolube.rig.operating_point_batch import NUMBERS
 from sonolube.rig.operating_point_grid import Advance, OperatingPoints, operating_points, steady_states
+from sonolube.rig.power import POWERS
 from sonolube.rig.record import Rig
 from sonolube.rig.resolved_rig import ResolvedRig, amplitude_labels, resolved_rig
 from sonolube.rig.responses import structure_in_contact
@@ -350,7 +351,7 @@ def _study(resolved: ResolvedRig, title: str, values: Mapping[str, NDArray[Any]]
     values = {
         name: array
         for name, array in values.items()
-        if name not in axes and not (known is conditions.AMPLITUDE and name in conditions.POWERS)
+        if name not in axes and not (known is conditions.AMPLITUDE and name in POWERS)
     }
     about = {"rig": rig.title, "friction_model": rig.friction_model.name} | amplitude_labels(resolved)
     return gridded(values, axes=axes, title=f"Friction {title}, {rig.title}", about=about)

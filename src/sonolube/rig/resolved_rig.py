@@ -133,12 +133,12 @@ class ResolvedRig:
         """Decay length of the contact force at rest. [m]"""
         return float(decay_length(self.rig.contact, separation=self.separation))
 
-    def amplifier_power(self, **drive: Floats) -> Floats | None:
-        """Power of a linear amplifier at settings of the drive; None where voltage or capacitance is not known. [W]"""
+    def charging_power(self, **drive: Floats) -> Floats | None:
+        """Charge of the capacitance, D 1.9, at settings of the drive; None where it or the voltage is unknown. [W]"""
         rig, capacitance = self.rig, actuator_capacitance(self.rig)
         if rig.drive is None or rig.drive.voltage_peak_to_peak is None or capacitance is None:
             return None
-        return self.voltage.amplifier_power(capacitance=capacitance, **drive)
+        return self.voltage.charging_power(capacitance=capacitance, **drive)
 
     def require_separation(self) -> "ResolvedRig":
         """Rig itself, whose load is refused where it leaves no separation between the surfaces."""

@@ -11,7 +11,7 @@ from sonolube.models.friction.models import FRICTION_MODELS, FrictionModel
 from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, ratio_caveats
 from sonolube.models.wear import WEAR_MODELS, cube_wear_rate
 from sonolube.rig.amplitude_source import ResolvedVibration
-from sonolube.rig.driven_rig import energy_balance
+from sonolube.rig.driven_rig import NO_DISSIPATED_POWER
 from sonolube.rig.friction_and_wear import (
     direction_caveats,
     mean_friction,
@@ -23,6 +23,7 @@ from sonolube.rig.friction_and_wear import (
     wear_model_that_holds,
 )
 from sonolube.rig.operating_point import COMPUTED, FrictionPoint, VibrationOrigin, WearPoint
+from sonolube.rig.power import PowerToSupply, power_to_supply
 from sonolube.rig.record import Rig
 from sonolube.rig.resolved_rig import ResolvedRig, held_back_caveats, resolved_rig, source_caveats
 from sonolube.rig.vibration import SteadyVibration, steady_vibration
@@ -41,11 +42,11 @@ class Simulation:
     vibration : SteadyVibration
         Steady vibration of the tip: source, status, kind, amplitudes and sampled motion.
     friction : FrictionPoint
-        Friction under it, and the power that a linear amplifier supplies, D 1.9.
+        Friction under it, and the power that the amplifier has to supply.
     wear : WearPoint
         Wear under it, by the wear model of the friction model's name where there is one.
-    energy_balance : str or None
-        How the power of the amplifier and the dissipated power compare, and why; where the vibration is a sine, why
+    energy_balance : str
+        How the two parts of the power to supply compare, and why; where the vibration is a sine, why
         there is no dissipated power.
     caveats : tuple of str
         Reasons for caution about the numbers, one line each.
@@ -56,7 +57,7 @@ class Simulation:
     vibration: SteadyVibration
     friction: FrictionPoint
     wear: WearPoint
-    energy_balance: str | None
+    energy_balance: str
     caveats: tuple[str, ...]
 
 
@@ -70,12 +71,15 @@ class VibratedFriction:
         Friction with vibration over friction without.
     origin : VibrationOrigin
         Amplitude and its source.
+    vibration : SteadyVibration or None
+        None where it leaves the range of the contact.
     caveats : tuple of str
         Reasons for caution about the numbers, one line each, ratios below 0 and above 1 among them.
     """
 
     ratio: CheckedRatio
     origin: VibrationOrigin
+    vibration: SteadyVibration | None
     caveats: tuple[str, ...]
 
 
@@ -111,9 +115,7 @@ def simulate(rig: Rig | ResolvedRig) -> Simulation:
         vibration=vibration,
         friction=friction,
         wear=_wear_point(resolved, vibration, wear_model_of(resolved.rig), friction.caveats, friction),
-        energy_balance=energy_balance(
-            actuator_power=friction.actuator_power, dissipated_power=vibration.dissipated_power
-        ),
+        energy_balance=NO_DISSIPATED_POWER if friction.power is None else friction.power.energy_balance,
         caveats=friction.caveats,
     )
 
@@ -152,7 +154,7 @@ def friction_point(rig: Rig | ResolvedRig, *, model: str | None = None) -> Frict
         resolved = resolved.with_friction_model(friction_model_named(resolved.rig, model))
     rig = resolved.rig
     found = vibrated_friction(resolved, sliding_speed=rig.sliding_speed)
-    ratio, power = found.ratio, resolved.amplifier_power()
+    ratio = found.ratio
     intrinsic, valid = rig.friction_coefficient * rig.normal_load, float(ratio.friction_ratio)
     others = _models_that_hold(resolved) if ratio.reason else ""
     return FrictionPoint(
@@ -167,7 +169,7 @@ def friction_point(rig: Rig | ResolvedRig, *, model: str | None = None) -> Frict
         friction_model=rig.friction_model.name,
         citation=rig.friction_model.citation,
         **found.origin,
-        actuator_power=None if power is None else float(power),
+        power=_power(resolved, found.vibration),
         caveats=found.caveats or resting_caveats(resolved),
     )
 
@@ -221,12 +223,25 @@ def vibrated_friction(rig: Rig | ResolvedRig, *, sliding_speed: ArrayLike) -> Vi
     except OutsideRange as refusal:
         if used.driven is not None:
             raise
-        return VibratedFriction(ratio=_outside(refusal, sliding_speed), origin=_stated_origin(used), caveats=())
+        ratio, origin = _outside(refusal, sliding_speed), _stated_origin(used)
+        return VibratedFriction(ratio=ratio, origin=origin, vibration=None, caveats=())
     ratio = mean_friction(resolved.rig, vibration.motions, sliding_speed=sliding_speed)
     return VibratedFriction(
         ratio=ratio,
         origin=_origin(vibration),
+        vibration=vibration,
         caveats=(*_caveats(resolved, vibration), *ratio_caveats(friction_ratio=ratio.friction_ratio)),
+    )
+
+
+def _power(resolved: ResolvedRig, vibration: SteadyVibration | None) -> PowerToSupply | None:
+    """Power that the amplifier of a rig has to supply at its operating point."""
+    charge = resolved.charging_power()
+    return power_to_supply(
+        charging_power=None if charge is None else float(charge),
+        dissipated_power=None if vibration is None else vibration.dissipated_power,
+        apparent_power=None if vibration is None else vibration.apparent_power,
+        peak_current=None if vibration is None else vibration.peak_current,
     )
 
 

@@ -14,6 +14,7 @@ from sonolube.models.dynamics.long_time_response import LongTimeResponse, march_
 from sonolube.models.friction.models import MeanGap
 from sonolube.rig.driven_rig import DrivenRig
 from sonolube.rig.friction_and_wear import prescribed_sine
+from sonolube.rig.power import electrical_load
 from sonolube.rig.record import AmplitudeSource, Rig
 from sonolube.rig.resolved_rig import ResolvedRig, drive_and_load, resolved_rig
 from sonolube.text.units import format_si
@@ -64,6 +65,10 @@ class SteadyVibration:
         Amplitude of another steady vibration under the same drive, where one was found. [m]
     dissipated_power : float or None
         Mean electrical power that stays in stack, dampers and contact; None for a prescribed sine. [W]
+    apparent_power : float or None
+        Root-mean-square voltage times root-mean-square current, of a motion at the period of the drive. [W]
+    peak_current : float or None
+        Greatest magnitude of that current. [A]
     elongation : complex
         First harmonic of the stack's elongation. [m]
     gap_closed : bool
@@ -87,6 +92,8 @@ class SteadyVibration:
     beat_amplitude: float | None = None
     coexisting_amplitude: float | None = None
     dissipated_power: float | None = None
+    apparent_power: float | None = None
+    peak_current: float | None = None
     elongation: complex = 0j
     gap_closed: bool
 
@@ -257,6 +264,7 @@ def _of_balance(resolved: ResolvedRig, rig: DrivenRig, states: SteadyStates, rea
     # the stack's elongation in complex amplitude, from the charge on it: q = C_S V + b.x
     charge = complex(states.current_harmonics[0]) / (2j * np.pi * drive.frequency)
     moved = charge - states.structure.clamped_capacitance * complex(states.voltage_harmonics[0])
+    load = electrical_load(states)
     return SteadyVibration(
         amplitude_source=resolved.vibration.source,
         amplitude_origin=resolved.vibration.text,
@@ -269,6 +277,8 @@ def _of_balance(resolved: ResolvedRig, rig: DrivenRig, states: SteadyStates, rea
         contact_loss_fraction=float(states.contact_loss_fraction),
         coexisting_amplitude=rival if np.isfinite(rival) else None,
         dissipated_power=float(states.dissipated_power),
+        apparent_power=float(load["apparent_power"]),
+        peak_current=float(load["peak_current"]),
         elongation=moved / rig.stack.charge_per_elongation,
         gap_closed=bool(states.gap_closed),
     )

@@ -200,7 +200,7 @@ def efficiency_characteristic(
         "normal_load": rig.normal_load,
     }
     volts = _levels(VOLTAGE, voltage_maximum, points)
-    power = DriveVoltage(drive=drive).amplifier_power(
+    power = DriveVoltage(drive=drive).charging_power(
         capacitance=rig.capacitance, voltage_peak_to_peak=volts, voltage_offset=drive.offset_ratio * volts
     )
     zero_friction_power = float(power_for_friction(line, reduced_friction_force=0.0, **conditions))

@@ -118,7 +118,7 @@ def control_energy(rig: Rig, run: ClosedLoopRun) -> ControlEnergy:
     interval = float(run.time[1] - run.time[0]) if run.time.size > 1 else 0.0
     amplifier_energy = None
     if rig.capacitance is not None and run.electrical_energy is not None:
-        power = DriveVoltage(drive=require_drive(rig)).amplifier_power(
+        power = DriveVoltage(drive=require_drive(rig)).charging_power(
             capacitance=rig.capacitance, frequency=run.frequency, **level_settings(rig, run.level)
         )
         amplifier_energy = float(power.sum() * interval)

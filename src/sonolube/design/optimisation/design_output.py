@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _AXES = {
-    "power": Axis("Power of the amplifier", "W"),
+    "power": Axis("Power to supply", "W"),
     "heat": Axis("Heat in the actuator", "W"),
     "voltage": Axis("Voltage, peak to peak", "V"),
 }
@@ -175,7 +175,7 @@ def designs_dataset(optimum: Optimum) -> "xr.Dataset":
     columns = {
         "frequency": screened.frequency,
         "voltage_peak_to_peak": screened.voltage_peak_to_peak,
-        "actuator_power": screened.objectives["power"],
+        "power_to_supply": screened.objectives["power"],
         "heat_rate": screened.objectives["heat"],
         **{name: by_design([each.entries[name] for each in screened.candidates]) for name in space.ranges},
     }

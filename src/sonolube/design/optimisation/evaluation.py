@@ -16,6 +16,7 @@ from sonolube.models.dynamics import Status, SteadyStates
 from sonolube.rig import point_batch
 from sonolube.rig.driven_rig import DrivenRig, DriveVoltage, driven_rig
 from sonolube.rig.operating_conditions import steady_states_of
+from sonolube.rig.power import electrical_load, larger_power
 from sonolube.rig.record import Rig
 from sonolube.rig.resolved_rig import resolved_rig
 
@@ -92,7 +93,8 @@ def evaluate(
 
     Notes
     -----
-    With the harmonics :math:`V_k` and :math:`I_k` of voltage and current, the heat is the electrical power dissipated
+    The power is that which the amplifier has to supply, :func:`sonolube.rig.larger_power` of both of its parts. With
+    the harmonics :math:`V_k` and :math:`I_k` of voltage and current, the heat is the electrical power dissipated
     in stack, dampers and contact, and the dielectric loss of a sine:
 
     .. math:: P_h = \frac12 \sum_k \operatorname{Re} V_k I_k^* + \frac\pi4 f C \tan\delta\, U_{pp}^2
@@ -115,15 +117,18 @@ def evaluate(
     settings = (volts, offset, f, load)
     states = steady_states_of(resolved, settings, separation(rig.contact, normal_load=load))
     stack = rig.stack
-    power = resolved.voltage.amplifier_power(
+    charge = resolved.voltage.charging_power(
         capacitance=stack.free_capacitance, voltage_peak_to_peak=volts, voltage_offset=offset, frequency=f
     )
+    power = larger_power(charging_power=charge, dissipated_power=states.dissipated_power)
     dielectric_loss = np.pi / 4 * f * stack.free_capacitance * limits.loss_tangent * volts**2
     heat = states.dissipated_power + dielectric_loss
     quantities = _vibration_quantities(rig, stack, states, bolt) | {
         "heat_rate": heat,
-        "actuator_power": power,
+        "power_to_supply": power,
+        "charging_power": charge,
         "dissipated_power": states.dissipated_power,
+        "apparent_power": electrical_load(states)["apparent_power"],
         "vibration_amplitude": states.vibration_amplitude,
     }
     extremes = resolved.voltage.range(voltage_peak_to_peak=volts, voltage_offset=offset)

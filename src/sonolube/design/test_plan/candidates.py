@@ -12,7 +12,7 @@ from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.models.thermal import EllipticSource, contact_rise
 from sonolube.prediction.inputs import RigInputs
-from sonolube.rig import Rig, friction_point, thermal_solid
+from sonolube.rig import PowerToSupply, Rig, friction_point, thermal_solid
 from sonolube.text.units import format_si, to_si
 
 MAX_CANDIDATES: Final = 200
@@ -58,14 +58,14 @@ class RigLimits:
     ----------
     voltage_maximum : float or None
         Magnitude of the drive voltage, its offset included. [V]
-    actuator_power : float or None
+    power_to_supply : float or None
         Power of the amplifier. [W]
     mean_temperature_rise : float or None
         Of the contact by friction without vibration. [K]
     """
 
     voltage_maximum: float | None = None
-    actuator_power: float | None = None
+    power_to_supply: float | None = None
     mean_temperature_rise: float | None = None
 
 
@@ -89,8 +89,12 @@ class Candidates:
         NaN where the rig states no voltage. [V]
     voltage_offset : ndarray
         [V]
-    actuator_power : ndarray
+    power_to_supply : ndarray
         NaN where it is not known. [W]
+    charging_power : ndarray
+        Part of it that charges the capacitance, D 1.9. [W]
+    dissipated_power : ndarray
+        Part of it that the motion turns into heat; where it is NaN the power to supply is a lower bound. [W]
     mean_temperature_rise : ndarray
         Of the contact by friction without vibration, the greatest; NaN without materials. [K]
     refused : tuple of str
@@ -104,7 +108,9 @@ class Candidates:
     vibration_amplitude: Floats
     voltage_peak_to_peak: Floats
     voltage_offset: Floats
-    actuator_power: Floats
+    power_to_supply: Floats
+    charging_power: Floats
+    dissipated_power: Floats
     mean_temperature_rise: Floats
     refused: tuple[str, ...]
     own: int
@@ -129,7 +135,7 @@ def candidate_tests(
         vibration_amplitude=amplitudes,
         voltage_peak_to_peak=voltage[order],
         voltage_offset=offset[order],
-        actuator_power=power[order],
+        **{name: values[order] for name, values in power.items()},
         mean_temperature_rise=heat * _rise_per_watt(rig, speeds, pin, disc),
         refused=(),
         own=own,
@@ -144,20 +150,30 @@ def _points(factors: Factors, own: tuple[float, float, float]) -> tuple[Floats, 
     return (points, int(np.argmax(same))) if same.any() else (np.vstack([own, points]), 0)
 
 
-def _driven(rig: Rig, inputs: RigInputs, amplitudes: Floats) -> tuple[Floats, Floats, Floats]:
-    """Voltage, its offset, and power of the amplifier at each amplitude; NaN where they are not known."""
+_PARTS: Final = ("power_to_supply", "charging_power", "dissipated_power")
+
+
+def _driven(rig: Rig, inputs: RigInputs, amplitudes: Floats) -> tuple[Floats, Floats, dict[str, Floats]]:
+    """Voltage, its offset, and power to supply with its parts at each amplitude; NaN where they are not known."""
     unknown = np.full(amplitudes.shape, np.nan)
     if rig.drive is None or inputs.voltage_peak_to_peak is None:
-        return unknown, np.zeros(amplitudes.shape), unknown
+        return unknown, np.zeros(amplitudes.shape), dict.fromkeys(_PARTS, unknown)
     share = amplitudes / inputs.amplitude.value
     voltage, offset = share * inputs.voltage_peak_to_peak, share * rig.drive.voltage_offset
-    power = [
+    powers = [
         friction_point(
             replace(rig, drive=replace(rig.drive, voltage_peak_to_peak=float(one), voltage_offset=float(middle)))
-        ).actuator_power
+        ).power
         for one, middle in zip(voltage, offset, strict=True)
     ]
-    return voltage, offset, np.array([np.nan if each is None else each for each in power])
+    known = {name: np.array([_number_of(each, name) for each in powers]) for name in _PARTS}
+    return voltage, offset, known
+
+
+def _number_of(power: PowerToSupply | None, part: str) -> float:
+    """Part of a power; NaN where it is not known."""
+    value = getattr(power, part, None)
+    return np.nan if value is None else float(value)
 
 
 def _rise_per_watt(rig: Rig, speeds: Floats, pin: str | None, disc: str | None) -> Floats:
@@ -180,7 +196,7 @@ def _exceeded(found: Candidates, limits: RigLimits) -> Iterator[list[str]]:
     """Limits that each candidate exceeds, in words."""
     checked = (
         (np.abs(found.voltage_offset) + found.voltage_peak_to_peak / 2, limits.voltage_maximum, "V", "drive reaches"),
-        (found.actuator_power, limits.actuator_power, "W", "amplifier would supply"),
+        (found.power_to_supply, limits.power_to_supply, "W", "amplifier would supply"),
         (found.mean_temperature_rise, limits.mean_temperature_rise, "K", "contact would be hotter by"),
     )
     for index in range(found.normal_load.size):

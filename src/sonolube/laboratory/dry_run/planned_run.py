@@ -178,7 +178,14 @@ def _vibrating(
         point,
         vibration_amplitude=None if isnan(amplitude) else amplitude,
         friction_force=force if moving and not isnan(force) and not is_lifted else point.friction_force,
+        dissipated_power=_known(found.dissipated_power[row]),
+        peak_current=_known(found.peak_current[row]),
     )
+
+
+def _known(value: float) -> float | None:
+    """Value, or None where it is NaN."""
+    return None if isnan(value) else float(value)
 
 
 def _with_loads(points: Sequence[PlannedPoint], capacitance: float | None, notes: _Notes) -> tuple[PlannedPoint, ...]:
@@ -187,7 +194,15 @@ def _with_loads(points: Sequence[PlannedPoint], capacitance: float | None, notes
         notes.caveats.append("actuator.capacitance is missing in the rig file: current, power and heat are left out")
         return tuple(points)
     load_of = cache(partial(drive_load, capacitance=capacitance))
-    return tuple(replace(point, load=load_of(drive_setting(point.setting))) for point in points)
+    return tuple(
+        replace(
+            point,
+            load=load_of(
+                drive_setting(point.setting), dissipated_power=point.dissipated_power, peak_current=point.peak_current
+            ),
+        )
+        for point in points
+    )
 
 
 def _heating(

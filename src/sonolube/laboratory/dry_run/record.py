@@ -1,6 +1,6 @@
 """Records of a dry run, with the load of the drive on its amplifier and the temperatures of contact and actuator.
 
-The actuator is a capacitance to the amplifier; temperatures follow by lumped bodies and the flash rise.
+Temperatures follow by lumped bodies and the flash rise.
 """
 
 from collections.abc import Mapping, Sequence
@@ -18,31 +18,45 @@ from sonolube.models.actuator import linear_amplifier_power
 from sonolube.models.thermal import EllipticSource, HeatedContact, ThermalNetwork, ThermalSolid
 from sonolube.models.thermal.bulk import network_rise
 from sonolube.models.thermal.contact_history import contact_temperature_history
+from sonolube.rig import PowerToSupply, power_to_supply
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class DriveLoad:
-    """Electrical load of a drive setting on an actuator taken as a capacitance.
+    """Electrical load of a drive setting on the amplifier.
 
     Parameters
     ----------
     peak_current : float
-        Greatest magnitude of the current. [A]
+        Greatest magnitude of the current, of the capacitance alone where that of the motion is not known. [A]
     slew_rate : float
         Greatest rate of change of the voltage. [V/s]
-    actuator_power : float
-        Power a linear amplifier draws for it, D 1.9. [W]
+    power : PowerToSupply
+        Power that the amplifier has to supply.
     capacitive_power : float
-        Root-mean-square alternating voltage times root-mean-square current, in W.
+        Root-mean-square alternating voltage times root-mean-square current of the capacitance, in W.
     """
 
     peak_current: float
     slew_rate: float
-    actuator_power: float
+    power: PowerToSupply
     capacitive_power: float
 
 
-def drive_load(setting: DriveSetting | None, *, capacitance: float) -> DriveLoad:
+def _power(charging_power: float, dissipated_power: float | None) -> PowerToSupply:
+    """Power to supply where the charge of the capacitance is known."""
+    found = power_to_supply(charging_power=charging_power, dissipated_power=dissipated_power)
+    assert found is not None
+    return found
+
+
+def drive_load(
+    setting: DriveSetting | None,
+    *,
+    capacitance: float,
+    dissipated_power: float | None = None,
+    peak_current: float | None = None,
+) -> DriveLoad:
     r"""Load of a drive setting on the amplifier.
 
     Parameters
@@ -51,6 +65,10 @@ def drive_load(setting: DriveSetting | None, *, capacitance: float) -> DriveLoad
         None for off.
     capacitance : float
         Capacitance of the actuator. [F]
+    dissipated_power : float or None
+        Heat of the motion; None where it is not known. [W]
+    peak_current : float or None
+        Greatest magnitude of the current with that of the motion; None where it is not known. [A]
 
     Returns
     -------
@@ -70,22 +88,22 @@ def drive_load(setting: DriveSetting | None, *, capacitance: float) -> DriveLoad
 
     Other waveforms are summed over 64 harmonics: the current of a square or sawtooth is limited by the amplifier alone,
     and that of a triangle comes out 18 % too high, by the overshoot of a truncated series.
-    The current of the motion, largest at resonance, comes on top.
+    The current of the motion, largest at resonance, comes on top where it is not given.
     """
     require_positive(capacitance=capacitance)
     if setting is None:
-        return DriveLoad(peak_current=0.0, slew_rate=0.0, actuator_power=0.0, capacitive_power=0.0)
+        return DriveLoad(peak_current=0.0, slew_rate=0.0, power=_power(0.0, 0.0), capacitive_power=0.0)
     need = capacitive_load(setting, capacitance=capacitance)
-    power = linear_amplifier_power(
+    charge = linear_amplifier_power(
         capacitance=capacitance,
         voltage_maximum=setting.voltage_maximum,
         voltage_peak_to_peak=setting.voltage_peak_to_peak,
         frequency=setting.frequency,
     )
     return DriveLoad(
-        peak_current=need.peak_current,
+        peak_current=need.peak_current if peak_current is None else peak_current,
         slew_rate=need.slew_rate,
-        actuator_power=float(power),
+        power=_power(float(charge), dissipated_power),
         capacitive_power=need.apparent_power,
     )
 
@@ -143,6 +161,10 @@ class PlannedPoint:
     friction_force : float or None
         Mean friction force. [N]
     load : DriveLoad or None
+    dissipated_power : float or None
+        Heat of the motion. [W]
+    peak_current : float or None
+        Greatest magnitude of the current with that of the motion. [A]
     """
 
     setting: SetPoint
@@ -152,6 +174,8 @@ class PlannedPoint:
     vibration_amplitude: float | None = None
     friction_force: float | None = None
     load: DriveLoad | None = None
+    dissipated_power: float | None = None
+    peak_current: float | None = None
 
     @property
     def recorded(self) -> float:
@@ -211,11 +235,11 @@ class DryRun:
 
     @property
     def amplifier_energy(self) -> float | None:
-        """Energy that a linear amplifier draws for the drive; None where it is not known. [J]"""
+        """Energy that the amplifier has to supply; None where it is not known. [J]"""
         loads = [(point.load, point.duration) for point in self.points]
         if any(load is None for load, _ in loads):
             return None
-        return sum(load.actuator_power * lasts for load, lasts in loads if load is not None)
+        return sum(load.power.power_to_supply * lasts for load, lasts in loads if load is not None)
 
 
 _POINTS = 400  # of the time line, at least

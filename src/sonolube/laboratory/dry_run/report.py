@@ -107,7 +107,7 @@ def caveats_of(found: DryRun) -> Iterator[str]:
                 f"static friction may reach {format_si(STATIC_FRICTION_FACTOR * force, 'N')} at the start, 1.35 times"
                 f" that of sliding (D 4.1.2), and trip limits.friction_force_maximum"
             )
-    if any(point.load and point.load.peak_current for point in found.points):
+    if any(point.load and point.load.peak_current and point.peak_current is None for point in found.points):
         yield "currents are those of the capacitance; near resonance that of the motion adds to them"
     if found.heating is not None and found.heating.contact_rise is not None:
         yield (
@@ -224,10 +224,10 @@ def dry_run_sums(found: DryRun) -> Iterator[tuple[str, str]]:
     loads = [point.load for point in found.points if point.load is not None]
     if loads and any(load.peak_current for load in loads):
         current = format_si(max(load.peak_current for load in loads), "A", digits=3)
-        power = format_si(max(load.actuator_power for load in loads), "W", digits=3)
+        power = max((load.power for load in loads), key=lambda each: each.power_to_supply).text
         energy = found.amplifier_energy
         in_all = "" if energy is None else f", {format_si(energy, 'J', digits=3)} in all"
-        yield "drive", f"at most {current} peak, {power} of a linear amplifier{in_all}"
+        yield "drive", f"at most {current} peak, {power} to supply{in_all}"
     heating = found.heating
     if heating is not None:
         yield "friction", f"{format_si(heating.frictional_heat, 'J', digits=3)} of work"

@@ -224,8 +224,12 @@ def peak_current(*, admittance: ArrayLike, voltage_amplitude: ArrayLike) -> Floa
     '70 mA'
     """
     y = require_finite_complex(admittance=admittance)
-    current = np.atleast_1d(y * require_finite_complex(voltage_amplitude=voltage_amplitude))
-    lowest, highest = _extremes_over_period(current)
+    return harmonic_peak(np.atleast_1d(y * require_finite_complex(voltage_amplitude=voltage_amplitude)))
+
+
+def harmonic_peak(harmonics: Complexes) -> Floats:
+    """Greatest magnitude over a period from the amplitudes of the harmonics 1 to n, shape (..., n)."""
+    lowest, highest = _extremes_over_period(harmonics)
     return np.maximum(-lowest, highest)
 
 

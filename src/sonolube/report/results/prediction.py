@@ -7,7 +7,8 @@ import numpy as np
 from sonolube.prediction.hierarchy import PROBABILITIES
 from sonolube.prediction.rig_statement import interval
 from sonolube.rig.datasets import LabelledArrays
-from sonolube.text.units import format_si
+from sonolube.rig.power import POWERS, with_former_key
+from sonolube.text.units import format_quantity, format_si
 from sonolube.vocabulary import quantity
 
 HEADS: Final = ["", "median", *(f"{100 * probability:.0f} %" for probability in PROBABILITIES)]
@@ -63,6 +64,13 @@ def predicted_names(prediction: LabelledArrays) -> list[str]:
     return [name for name, values in prediction.variables.items() if values.dims == ("draw",)]
 
 
+def power_object(prediction: LabelledArrays) -> dict[str, Any]:
+    """Power to supply with its parts, in W, those that are known, and whether it is a lower bound."""
+    known = {name: prediction.attrs[name] for name in POWERS if name in prediction.attrs}
+    bound = {"at_least": ["power_to_supply"]} if prediction.attrs.get("power_is_at_least") else {}
+    return {"actuator_power": None, **with_former_key(known), **bound}
+
+
 def column(prediction: LabelledArrays, name: str) -> list[Any]:
     """Values of a variable over the uncertain inputs or measurements."""
     values: list[Any] = prediction[name].to_numpy().tolist()
@@ -80,13 +88,14 @@ def _text(name: str, value: float) -> str:
 
 
 def operating_texts(prediction: LabelledArrays) -> list[dict[str, str]]:
-    """Amplitude with its spread, and power of the amplifier where it is known, as labels and texts."""
+    """Amplitude with its spread, and power to supply with its parts where they are known, as labels and texts."""
     spread = dict(zip(column(prediction, "input"), column(prediction, "input_spread"), strict=True))
     found = []
-    for name in ("vibration_amplitude", "actuator_power"):
+    for name in ("vibration_amplitude", *POWERS):
         value = prediction.attrs.get(name)
         if value is not None:
             within = f" within {100 * spread[name]:.0f} %" if name in spread else ""
-            text = f"{format_si(value, quantity(name).unit)}{within}"
+            bound = "at least " if name == POWERS[0] and prediction.attrs["power_is_at_least"] else ""
+            text = f"{bound}{format_quantity(value, name)}{within}"
             found.append({"name": name, "label": quantity(name).meaning, "text": text})
     return found

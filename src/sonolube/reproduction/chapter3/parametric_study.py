@@ -179,7 +179,7 @@ def _frequency() -> Iterator[Row]:
 def _power() -> Row:
     """Amplifier's power at resonance over the least elsewhere, for one reduction of friction."""
     study, peak = tribometer_response.least_power_over_frequency(), tribometer_response.resonance()
-    f, amplifier, dissipated = (study[name].values for name in ("frequency", "actuator_power", "dissipated_power"))
+    f, amplifier, dissipated = (study[name].values for name in ("frequency", "charging_power", "dissipated_power"))
     at_peak, possible = peak.nearest(f), ~np.isnan(amplifier)
     least = int(np.nanargmin(dissipated))
     ratio = float(study["friction_ratio"].values[at_peak])
@@ -239,10 +239,12 @@ def parametric_study_figures() -> Iterator[ReportFigure]:
     yield report_figure("figure-3-15-voltage", _draw_voltage)
     yield report_figure("figure-3-16-speed", lambda: draw_chart(speed_chart(tribometer_response.response_over_speed())))
     yield report_figure(
-        "figure-3-17-frequency", lambda: draw_chart(frequency_chart(tribometer_response.response_over_frequency()))
+        "figure-3-17-frequency",
+        lambda: draw_chart(frequency_chart(tribometer_response.response_over_frequency(), power="charging_power")),
     )
     yield report_figure(
-        "figure-3-17-least-power", lambda: draw_chart(power_chart(tribometer_response.least_power_over_frequency()))
+        "figure-3-17-least-power",
+        lambda: draw_chart(power_chart(tribometer_response.least_power_over_frequency(), power="charging_power")),
     )
     yield report_figure(
         "figure-3-18-waveform", lambda: draw_chart(waveform_chart(tribometer_response.response_over_waveform()))

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _TABOR: Final = 2.8  # hardness over yield strength of a non-hardening metal; Tabor, The Hardness of Metals (1951)
+_POWER: Final = "charging_power"  # D 1.9, which the maps of D are over
 _BY_THE_MODEL: Final = "by-the-multi-scale-model"
 _MODEL: Final = f"Multi-scale model with asperity stick-slip, nothing fitted to friction. {IDENTIFIED_NOTE}"
 _SCANS: Final = "scans of the plates, which are only drawn (Figs. 4.15 and 4.19)"
@@ -89,7 +90,7 @@ def stress_maps() -> "xr.Dataset":
     """Friction reduction over the speeds and loads of Table 4.1 at its voltages."""
     voltages = [point.voltage_peak_to_peak for point in power_map.example_points()]
     return velocity_stress_map(
-        plate_rig(), sliding_speed=_speeds(), normal_load=_loads(), voltage_peak_to_peak=voltages
+        plate_rig(), sliding_speed=_speeds(), normal_load=_loads(), voltage_peak_to_peak=voltages, power=_POWER
     )
 
 
@@ -97,7 +98,9 @@ def stress_maps() -> "xr.Dataset":
 def power_maps() -> "xr.Dataset":
     """Friction reduction over the speeds and powers of Table 4.1 under its loads."""
     voltages = np.linspace(1.0, power_map.example_points()[-1].voltage_peak_to_peak, 26)
-    return velocity_power_map(plate_rig(), sliding_speed=_speeds(), voltage_peak_to_peak=voltages, normal_load=_loads())
+    return velocity_power_map(
+        plate_rig(), sliding_speed=_speeds(), voltage_peak_to_peak=voltages, normal_load=_loads(), power=_POWER
+    )
 
 
 @cache
@@ -108,6 +111,7 @@ def extended_power_map() -> "xr.Dataset":
         sliding_speed=_speeds(),
         voltage_peak_to_peak=np.linspace(2.0, published_number("3.3.5-voltage").high, 100),
         normal_load=[power_map.example_test()["normal_load"]],
+        power=_POWER,
     )
 
 
@@ -268,4 +272,5 @@ def coated_power_maps() -> "xr.Dataset":
         sliding_speed=uncoated["sliding_speed"].values,
         voltage_peak_to_peak=uncoated["voltage_peak_to_peak"].values,
         normal_load=uncoated["normal_load"].values,
+        power=_POWER,
     )

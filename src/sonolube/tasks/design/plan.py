@@ -170,7 +170,7 @@ def plan(
         points=points,
         limits=RigLimits(
             voltage_maximum=in_si("amplifier_voltage", amplifier_voltage),
-            actuator_power=in_si("amplifier_power", amplifier_power),
+            power_to_supply=in_si("amplifier_power", amplifier_power),
             mean_temperature_rise=in_si("temperature_rise", temperature_rise),
         ),
         runs=runs_of(runs, mapping),

@@ -114,7 +114,8 @@ class PredictionAnswer(Answer):
             "stiffness_probes": self._probes(),
             "measured": [measured_object(one) for one in self.measured],
             "interval_share_left": dict(zip(results.column(found, "input"), shares, strict=True)),
-            **{name: found.attrs.get(name) for name in ("runs", "actuator_power")},
+            "runs": found.attrs.get("runs"),
+            **results.power_object(found),
             "operating_point": results.operating_texts(found),
         }
 

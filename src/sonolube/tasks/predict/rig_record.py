@@ -3,7 +3,7 @@
 Their answer shows every field of the record that is a quantity, with its unit.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import field
 from typing import Annotated, Any, Unpack
 
@@ -18,6 +18,7 @@ from sonolube.report.results.rig_point import beyond_the_model, measured_object,
 from sonolube.rig import Rig, contact_point, friction_point, temperature_point, thermal_solid, wear_point
 from sonolube.rig.datasets import LabelledArrays, result_quantities, result_texts
 from sonolube.rig.figures import simulation_chart, temperature_chart
+from sonolube.rig.power import PowerToSupply, with_former_key
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.rig.responses import simulation_arrays
 from sonolube.rig.simulation import friction_model_named, mechanism_text
@@ -48,6 +49,8 @@ class RigRecord(Answer):
         What was measured on the rig under the same conditions.
     leading : sequence of str
         Caveats that stand above the result.
+    at_least : collection of str
+        Quantities of which a lower bound is known.
     rows : sequence of tuple of str
         Further names and texts.
     entries : mapping of str to object
@@ -60,6 +63,7 @@ class RigRecord(Answer):
     result: Any
     measured: Sequence[FrictionTest] = ()
     leading: Sequence[str] = ()
+    at_least: Collection[str] = ()
     rows: Sequence[tuple[str, str]] = ()
     entries: Mapping[str, Any] = field(default_factory=dict)
     drawings: Mapping[str, Drawing] = field(default_factory=dict)
@@ -83,7 +87,12 @@ class RigRecord(Answer):
 
     def object(self) -> dict[str, Any]:
         """Title of the rig, text and quantities."""
-        content = {"rig": self.rig.title, **result_texts(self.result), **si(result_quantities(self.result))}
+        content = {
+            "rig": self.rig.title,
+            **result_texts(self.result),
+            **si(with_former_key(result_quantities(self.result))),
+        }
+        content |= {"at_least": list(self.at_least)} if self.at_least else {}
         content |= self.entries
         return content | {"measured": [measured_object(one) for one in self.measured]} if self.measured else content
 
@@ -109,7 +118,8 @@ class RigRecord(Answer):
         least, unit = _MIN_FORCE * self.rig.normal_load, quantities()[name].unit
         if unit == "N" and value is not None and 0 < abs(value) < least:
             return f"below {format_si(least, unit)}"
-        return "none" if value is None else format_quantity(value, name)
+        text = "none" if value is None else format_quantity(value, name)
+        return f"at least {text}" if name in self.at_least else text
 
 
 _STIFFNESS = Parameter(f"Model of the tangential stiffness: {', '.join(TANGENTIAL_STIFFNESSES)}.", "MODEL")
@@ -148,6 +158,11 @@ _FRICTION_MODEL = Parameter(
 )
 
 
+def _lower_bounds(power: PowerToSupply | None) -> Sequence[str]:
+    """Names of the quantities of a power of which a lower bound is known."""
+    return ("power_to_supply",) if power is not None and power.is_at_least else ()
+
+
 @task
 def friction(
     rig: RigFile, *, model: Annotated[str | None, _FRICTION_MODEL] = None, interval: Interval = True
@@ -175,6 +190,7 @@ def friction(
         rig=known,
         result=result,
         measured=measured_on(known, vibration_amplitude=result.vibration_amplitude),
+        at_least=_lower_bounds(result.power),
         leading=large_amplitude_caveats(resolved, vibration_amplitude=result.vibration_amplitude),
         rows=[*([("mechanism", mechanism)] if mechanism else []), *beyond.rows()],
         entries=({"mechanism": mechanism} if mechanism else {}) | beyond.object(),
@@ -219,6 +235,7 @@ def simulate(rig: RigFile, **watch: Unpack[Watched]) -> RigRecord:
     return RigRecord(
         rig=known,
         result=result,
+        at_least=_lower_bounds(result.friction.power),
         measured=measured_on(known, vibration_amplitude=result.vibration.vibration_amplitude),
         drawings={name: Drawing(chart=lambda: simulation_chart(labelled))},
         datasets={f"{name}.nc": labelled},

@@ -2,6 +2,8 @@
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from sonolube.design import map_layout
 from sonolube.design.efficiency import EfficiencyCalibration
 from sonolube.design.map_figures import panels_text
@@ -18,14 +20,15 @@ from sonolube.report.results.record_object import (
     picked,
     rig_settings,
 )
-from sonolube.rig import AMPLITUDE, VOLTAGE, Rig
+from sonolube.rig import AMPLITUDE, VOLTAGE, PowerToSupply, Rig, power_to_supply
+from sonolube.rig.power import POWERS, with_former_key
 from sonolube.text.units import format_si
 from sonolube.vocabulary import quantity, si
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_SETTINGS = ("sliding_speed", "normal_load", "frequency", VOLTAGE.name, AMPLITUDE.name, "actuator_power")
+_SETTINGS = ("sliding_speed", "normal_load", "frequency", VOLTAGE.name, AMPLITUDE.name)
 
 
 def map_blocks(rig: Rig, mapped: "xr.Dataset") -> list[Block]:
@@ -47,7 +50,7 @@ def map_object(rig: Rig, mapped: "xr.Dataset") -> dict[str, Any]:
         "same_panels": bool(panels_text(mapped)),
         "points": int(mapped["status"].size),
         "without_result": int(mapped["friction_reduction"].isnull().sum()),
-        "most_reduction": si(_greatest(mapped)),
+        "most_reduction": si(with_former_key(_greatest(mapped))),
     }
 
 
@@ -74,16 +77,28 @@ def _greatest(mapped: "xr.Dataset") -> dict[str, float]:
     point = extreme_point(mapped, outcome="friction_reduction", highest=True)
     if point is None:
         return {}
-    names = ("friction_reduction", *(name for name in _SETTINGS if name in mapped.coords))
-    return {name: float(point[name]) for name in names if point[name].ndim == 0}
+    names = ("friction_reduction", *(name for name in (*_SETTINGS, *POWERS) if name in mapped.variables))
+    return {name: float(point[name]) for name in names if point[name].ndim == 0 and np.isfinite(point[name])}
+
+
+def _power(greatest: dict[str, float]) -> PowerToSupply | None:
+    """Power to supply at the point of the greatest reduction."""
+    return power_to_supply(
+        charging_power=greatest.get("charging_power"), dissipated_power=greatest.get("dissipated_power")
+    )
 
 
 def _facts(mapped: "xr.Dataset") -> list[tuple[str, str]]:
     """Greatest reduction, and the ridge where the map has one."""
     found = [("panels", text)] if (text := panels_text(mapped)) else []
-    values = [format_si(value, quantity(name).unit) for name, value in _greatest(mapped).items()]
+    greatest = _greatest(mapped)
+    values = [format_si(greatest[name], quantity(name).unit) for name in greatest if name not in POWERS]
+    power = _power(greatest)
     if values:
-        found.append(("most reduction", f"{values[0]} at {', '.join(values[1:])}"))
+        supplied = [] if power is None else [f"{power.text} to supply"]
+        found.append(("most reduction", f"{values[0]} at {', '.join([*values[1:], *supplied])}"))
+    if power is not None:
+        found.append(("energy", power.energy_balance))
     ridge = _ridge(mapped)
     if ridge:
         found.append(("ridge", f"{ridge}; beyond it doubling the power buys less than 5 %"))
@@ -122,12 +137,15 @@ def _panel_tables(mapped: "xr.Dataset", panel: str | None) -> list[PageTable]:
     """Greatest reduction in each panel, and the ridge where the map has one; none where all panels are the same."""
     if panel is None or panels_text(mapped):
         return []
-    level = "actuator_power" if "actuator_power" in mapped.coords else AMPLITUDE.name
+    level = "power_to_supply" if "power_to_supply" in mapped.coords else AMPLITUDE.name
     names = [name for name in ("friction_reduction", "sliding_speed", level) if name != panel]
     rows = []
     for index in range(mapped.sizes[panel]):
         part = mapped.isel({panel: index})
-        texts = {name: format_si(value, quantity(name).unit) for name, value in _greatest(part).items()}
+        greatest = _greatest(part)
+        texts = {name: format_si(value, quantity(name).unit) for name, value in greatest.items()}
+        power = _power(greatest)
+        texts |= {} if power is None else {"power_to_supply": power.text}
         value = format_si(float(part[panel]), quantity(panel).unit)
         rows.append((value, *(texts.get(name, "") for name in names), _ridge(part)))
     heads = (quantity(panel).meaning, *(quantity(name).meaning for name in names), "Ridge")

@@ -17,14 +17,14 @@ from sonolube.design.optimisation import (
 from sonolube.design.optimisation.design_output import design_changes
 from sonolube.design.optimisation.evaluation import LIMITS
 from sonolube.models.actuator import MatchingNetwork
+from sonolube.rig.power import POWERS, with_former_key
 from sonolube.text.units import format_si
 from sonolube.vocabulary import quantity, si
 
 _DESIGN_QUANTITIES = (
     "vibration_amplitude",
-    "actuator_power",
+    *POWERS,
     "heat_rate",
-    "peak_current",
     "dynamic_tension",
     "nominal_pressure",
     "temperature_rise",
@@ -54,8 +54,9 @@ def facts(optimum: Optimum, electric: DriveElectronics) -> list[tuple[str, str]]
             for name, value in best.candidate.entries.items()
         },
         "amplitude": format_si(amplitude, "m"),
-        "power of amplifier": f"{format_si(best.objective('power'), 'W')} (D 1.9)",
-        "heat in actuator": format_si(best.objective("heat"), "W"),
+        "power to supply": format_si(best.objective("power"), "W"),
+        "of which": _parts_text(best),
+        "heat in actuator": f"{format_si(best.objective('heat'), 'W')}, the dielectric loss included",
         "tightest limit": tightest_limit(best),
         "amplifier": f"{format_si(need.voltage_maximum, 'V')}, {format_si(need.peak_current, 'A')} peak,"
         f" {format_si(need.apparent_power, 'W').replace('W', 'VA')}, {need.slew_rate * 1e-6:.3g} V/us,"
@@ -64,6 +65,14 @@ def facts(optimum: Optimum, electric: DriveElectronics) -> list[tuple[str, str]]
         "designs": f"{int(screened.feasible.sum())} of {screened.frequency.size} within all limits",
     }
     return list(facts.items())
+
+
+def _parts_text(point: DesignPoint) -> str:
+    """Both parts of the power to supply, of which the larger is supplied."""
+    charge, heat = (
+        format_si(float(point.evaluation.quantities[name][0]), "W") for name in ("charging_power", "dissipated_power")
+    )
+    return f"the larger of {charge}, charge of the capacitance (D 1.9), and {heat}, heat of the motion"
 
 
 def designs_table(optimum: Optimum) -> tuple[list[str], list[tuple[str, ...]]]:
@@ -88,18 +97,13 @@ def designs_table(optimum: Optimum) -> tuple[list[str], list[tuple[str, ...]]]:
 
 
 def optimum_caveats(optimum: Optimum) -> list[str]:
-    """Values at the end of their range, heat beyond the amplifier's power, and a preload that is not given."""
+    """Values at the end of their range, and a preload that is not given."""
     best, caveats = optimum.best, []
     values = {"frequency": best.frequency, **best.candidate.entries}
     for name, (low, high) in optimum.problem.space.bounds.items():
         for end, side in ((low, "lowest"), (high, "highest")):
             if abs(log(values[name] / end)) < _AT_END:
                 caveats.append(f"{name} lies at the {side} value allowed: a better design may lie beyond")
-    if best.objective("heat") > best.objective("power"):
-        caveats.append(
-            "more heat stays in the actuator than D 1.9 counts as the amplifier's power: near a resonance the"
-            " motion takes real power, which that formula leaves out"
-        )
     if best.evaluation.utilisation["tension"][0] == 0:
         caveats.append("no preload is given, so that tension in the stack is not judged: give bolt and preload")
     return caveats
@@ -183,7 +187,7 @@ def _design_object(point: DesignPoint) -> dict[str, Any]:
         "waveform": point.candidate.waveform,
         **si({"frequency": point.frequency, "voltage_peak_to_peak": point.voltage_peak_to_peak}),
         **si(dict(point.candidate.entries)),
-        **si({name: float(numbers[name][0]) for name in _DESIGN_QUANTITIES if name in numbers}),
+        **si(with_former_key({name: float(numbers[name][0]) for name in _DESIGN_QUANTITIES if name in numbers})),
         "objectives": {name: point.objective(name) for name in OBJECTIVES},
         "limits_used": {name: float(point.evaluation.utilisation[name][0]) for name in LIMITS},
     }

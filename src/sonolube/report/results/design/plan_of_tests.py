@@ -5,11 +5,13 @@ from typing import Any, Final
 
 import numpy as np
 
+from sonolube.design.test_plan.candidates import Candidates
 from sonolube.design.test_plan.comparison import RunState
 from sonolube.design.test_plan.plan import TestPlan
 from sonolube.facts.protocol import Limits
 from sonolube.report.results.record_object import finite, picked
 from sonolube.rig import Rig
+from sonolube.rig.power import power_text, with_former_key
 from sonolube.text.units import format_like, format_si
 from sonolube.vocabulary import si
 
@@ -21,7 +23,7 @@ POINT_HEADS: Final = (
     "amplitude",
     "friction ratio, 80 %",
     "chance of the difference",
-    "amplifier",
+    "power to supply",
     "contact hotter by",
     "information",
 )
@@ -29,7 +31,7 @@ POINT_HEADS: Final = (
 
 _POINT = (
     *("normal_load", "sliding_speed", "voltage_peak_to_peak", "vibration_amplitude"),
-    *("actuator_power", "mean_temperature_rise"),
+    *("power_to_supply", "charging_power", "dissipated_power", "mean_temperature_rise"),
 )
 _TO_FILL = ("Friction without (N)", "Friction with (N)", "Measured amplitude", "Remarks")
 _SETTINGS = ("Load (N)", "Speed (mm/s)", "Voltage (V)", "Amplitude (um)", "Vibration (s)")
@@ -113,8 +115,8 @@ def limit_rows(plan: TestPlan, limits: Limits) -> list[tuple[str, str]]:
         ("Friction force", format_si(limits.friction_force_maximum or np.nan, "N")),
         ("Temperature of the actuator", ""),
     ]
-    if of_rig.actuator_power is not None:
-        rows.append(("Power of the amplifier", format_si(of_rig.actuator_power, "W")))
+    if of_rig.power_to_supply is not None:
+        rows.append(("Power of the amplifier", format_si(of_rig.power_to_supply, "W")))
     if plan.materials is not None and of_rig.mean_temperature_rise is not None:
         rows.append(("Rise of the contact by friction", format_si(of_rig.mean_temperature_rise, "K")))
     return rows
@@ -155,7 +157,8 @@ def plan_object(rig: Rig, plan: TestPlan) -> dict[str, Any]:
         "friction_models": plan.weights,
         "information": {"value": plan.batch.information[-1], "of": plan.entropy, "unit": "bit"},
         "points": [
-            si({name: finite(values[point]) for name, values in picked(at, *_POINT).items()})
+            si(with_former_key({name: finite(values[point]) for name, values in picked(at, *_POINT).items()}))
+            | ({"at_least": ["power_to_supply"]} if np.isnan(at.dissipated_power[point]) else {})
             | {
                 "friction_ratio": {
                     "median": float(plan.median[point]),
@@ -190,7 +193,7 @@ def _point(plan: TestPlan, point: int) -> list[str]:
         *_conditions(plan, point),
         f"{plan.median[point]:.2f} ({low:.2f} to {high:.2f})",
         f"{100 * plan.chance[point]:.0f} %",
-        _text(plan.candidates.actuator_power[point], "W"),
+        _power_text(plan.candidates, point),
         _text(plan.candidates.mean_temperature_rise[point], "K"),
         f"{plan.information[point]:.3f} bit",
     ]
@@ -215,6 +218,12 @@ def _states_text(states: Sequence[RunState]) -> str:
 def _hours(duration: float) -> str:
     """Time of sliding in words."""
     return f"{duration / 3600:.2g} h of sliding" if duration >= 3600 else f"{duration / 60:.2g} min of sliding"
+
+
+def _power_text(at: Candidates, point: int) -> str:
+    """Power to supply at a point, or a dash where it is not known."""
+    power, heat = float(at.power_to_supply[point]), float(at.dissipated_power[point])
+    return power_text(power, is_at_least=bool(np.isnan(heat))) if np.isfinite(power) else "-"
 
 
 def _text(value: float, unit: str) -> str:

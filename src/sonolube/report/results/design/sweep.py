@@ -10,7 +10,9 @@ from sonolube.design.point_statistics import extreme_place, extreme_point, failu
 from sonolube.report.blocks import Block, Rows
 from sonolube.report.page import Page, PageTable
 from sonolube.report.results.record_object import amplitude_object, amplitude_rows
-from sonolube.rig import Rig, energy_balance, quantity_of_axis
+from sonolube.rig import Rig, power_to_supply, quantity_of_axis
+from sonolube.rig.driven_rig import NO_DISSIPATED_POWER
+from sonolube.rig.power import POWERS, PowerToSupply, with_former_key
 from sonolube.text.units import format_quantity, format_si
 from sonolube.vocabulary import quantity, si
 
@@ -19,19 +21,20 @@ if TYPE_CHECKING:
 
 Named = Iterator[tuple[str, str]]
 
-OUTCOMES = ("friction_ratio", "vibration_amplitude", "actuator_power", "dissipated_power")
+OUTCOMES = ("friction_ratio", "vibration_amplitude", *POWERS)
 """Quantities that the answer of a sweep has of a point."""
 
 
 def _level_rows(study: "xr.Dataset") -> Named:
-    """Least friction, voltage or amplitude at which contact is lost, and power of the amplifier where it is known."""
+    """Least friction, voltage or amplitude at which contact is lost, and the highest power to supply where known."""
     quantity = quantity_of_axis(study.dims)
     for best in _best_points(study):
         yield "least friction", f"ratio {_text(best, 'friction_ratio')} at {_text(best, quantity.name)}"
     lost = study[quantity.name].values[study["contact_loss_fraction"].values > 0]
     yield "contact is lost", f"from {format_si(float(lost.min()), quantity.unit)}" if lost.size else "nowhere"
-    if "actuator_power" in study and not study["actuator_power"].isnull().all():
-        yield "amplifier", f"up to {format_si(float(study['actuator_power'].max()), 'W')}, D 1.9"
+    highest = extreme_point(study, outcome="power_to_supply", highest=True) if "power_to_supply" in study else None
+    if highest is not None:
+        yield "power to supply", f"up to {_supplied(highest)}"
 
 
 def _speed_rows(study: "xr.Dataset") -> Named:
@@ -47,17 +50,16 @@ def _frequency_rows(study: "xr.Dataset") -> Named:
     """Least friction at each voltage."""
     for best in _best_points(study):
         at = f"{_text(best, 'frequency', digits=4)}, {_text(best, 'vibration_amplitude')}"
-        text = f"least friction ratio {_text(best, 'friction_ratio')} at {at}, {_text(best, 'actuator_power')}"
+        text = f"least friction ratio {_text(best, 'friction_ratio')} at {at}, {_supplied(best)}"
         yield f"at {_text(best, 'voltage_peak_to_peak')}", text
 
 
 def _power_rows(study: "xr.Dataset") -> Named:
-    """Least power that the friction ratio takes, of the amplifier and dissipated."""
-    for name, label in (("actuator_power", "least power, D 1.9"), ("dissipated_power", "least dissipation")):
-        if not study[name].isnull().all():
-            least = study.isel(frequency=extreme_place(study, outcome=name) or 0)
-            at = f"{_text(least, 'frequency', digits=4)} and {_text(least, 'voltage_peak_to_peak')}"
-            yield label, f"{_text(least, name)} at {at} for friction ratio {_text(least, 'friction_ratio')}"
+    """Least power to supply that the friction ratio takes."""
+    if not study["power_to_supply"].isnull().all():
+        least = study.isel(frequency=extreme_place(study, outcome="power_to_supply") or 0)
+        at = f"{_text(least, 'frequency', digits=4)} and {_text(least, 'voltage_peak_to_peak')}"
+        yield "least power to supply", f"{_supplied(least)} at {at} for friction ratio {_text(least, 'friction_ratio')}"
 
 
 def _waveform_rows(study: "xr.Dataset") -> Named:
@@ -86,12 +88,29 @@ def _energy_rows(study: "xr.Dataset") -> Named:
 
 
 def power_balance(point: "xr.Dataset") -> str | None:
-    """Comparison of the amplifier's power with the dissipated power of a point; None where it has no power."""
-    if "actuator_power" not in point:
+    """Comparison of the parts of the power to supply of a point; None where it has no power."""
+    if "charging_power" not in point:
         return None
-    return energy_balance(
-        actuator_power=float(point["actuator_power"]), dissipated_power=float(point["dissipated_power"])
-    )
+    power = _power(point)
+    return NO_DISSIPATED_POWER if power is None else power.energy_balance
+
+
+def _power(point: "xr.Dataset") -> PowerToSupply | None:
+    """Power to supply at a point of a study."""
+    parts = {name: float(point[name]) for name in ("charging_power", "dissipated_power")}
+    return power_to_supply(**parts)
+
+
+def _bound(point: "xr.Dataset") -> dict[str, Any]:
+    """Quantities of a point of which a lower bound is known, for JSON."""
+    power = _power(point) if "charging_power" in point else None
+    return {"at_least": ["power_to_supply"]} if power is not None and power.is_at_least else {}
+
+
+def _supplied(point: "xr.Dataset") -> str:
+    """Power to supply at a point as text."""
+    power = _power(point)
+    return "power not known" if power is None else f"{power.text} to supply"
 
 
 _ROWS: "dict[str, Callable[[xr.Dataset], Named]]" = {
@@ -130,11 +149,12 @@ def _point_object(point: "xr.Dataset") -> dict[str, Any]:
     known = dict.fromkeys([*point.coords, *(name for name in OUTCOMES if name in point)])
     names = [str(name) for name in known if point[name].ndim == 0 and not _missing(point, name)]
     waveform = {"waveform": str(point["waveform"].values)} if "waveform" in names else {}
-    balance = power_balance(point)
+    balance, bound = power_balance(point), _bound(point)
     return (
         waveform
-        | si({name: float(point[name]) for name in names if name != "waveform"})
+        | si(with_former_key({name: float(point[name]) for name in names if name != "waveform"}))
         | ({} if balance is None else {"energy_balance": balance})
+        | bound
     )
 
 
@@ -230,11 +250,12 @@ def _least(plan: SweepPlan, result: "xr.Dataset") -> dict[str, Any]:
     if place is None or point is None:
         return {}
     swept = {key: values[0].item() for key, values in plan.rows(place, place + 1).items()}
-    balance = power_balance(point)
+    balance, bound = power_balance(point), _bound(point)
     return (
         swept
-        | si({name: float(point[name]) for name in OUTCOMES if np.isfinite(point[name])})
+        | si(with_former_key({name: float(point[name]) for name in OUTCOMES if np.isfinite(point[name])}))
         | ({} if balance is None else {"energy_balance": balance})
+        | bound
     )
 
 

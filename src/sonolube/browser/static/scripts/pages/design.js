@@ -230,7 +230,7 @@ function Designs({state: {view, rig}, rigView, schema}) {
         <${Statement}
           isDim=${isOld}
           text=${[
-            `Least ${content.answer.minimise}: ${factOf(content, 'power of amplifier')}`,
+            `Least ${content.answer.minimise}: ${factOf(content, 'power to supply')}`,
             `at ${factOf(content, 'drive')}`,
           ].join(' ')}
         />
