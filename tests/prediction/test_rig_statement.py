@@ -101,8 +101,10 @@ def test_what_to_measure_is_a_run_here_or_the_best_of_the_others() -> None:
 
 @mark.parametrize(("rise", "verb"), [(49.0, "does not limit"), (51.0, "limits")])
 def test_heat_limits_from_fifty_kelvin_on_at_the_upper_end_of_its_interval(rise: float, verb: str) -> None:
-    found = statement(prediction(rise=rise, actuator_power=6.234))[2]
-    assert found == f"Heat of friction {verb}: at most {rise:.2g} K (80 %); the amplifier supplies 6.23 W."
+    found = statement(prediction(rise=rise, power_to_supply=6.234, power_is_at_least=0))[2]
+    assert found == f"Heat of friction {verb}: at most {rise:.2g} K (80 %); the amplifier has to supply 6.23 W."
+    bound = statement(prediction(rise=rise, power_to_supply=6.234, power_is_at_least=1))[2]
+    assert bound.endswith("the amplifier has to supply at least 6.23 W.")
 
 
 def test_heat_and_power_that_are_not_known_are_said_with_the_reason() -> None:
@@ -162,7 +164,9 @@ def test_a_prediction_without_runs_has_the_numbers_of_its_rig() -> None:
     assert found["friction_law"] == "asperity_stick_slip"
     assert found["friction_model"] == "asperity_stick_slip"
     assert 0 < found["friction_ratio_by_the_rigs_model"] < 1
-    assert found["actuator_power"] > 0
+    assert found["power_to_supply"] == approx(43.9, rel=2e-3)
+    assert found["charging_power"] == approx(360e-9 * 28**2 * 22e3)
+    assert found["power_is_at_least"] == 0
     assert "tested" not in found
     assert "actuator.amplitude_per_volt: 2.5 um at 28 V" in found["assumptions"]
     assert attributes(any_ratio=True)["unknown"] == 1

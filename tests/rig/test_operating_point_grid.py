@@ -13,6 +13,7 @@ from sonolube.models.dynamics import drive_receptance
 from sonolube.models.friction import FRICTION_MODELS
 from sonolube.rig import Rig, operating_points, point_batch, read_rig, simulate, structure_in_contact
 from sonolube.rig.operating_point_batch import NUMBERS, STATUSES, _distinct, _shifted
+from sonolube.rig.power import POWERS
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
 TRIBOMETER = read_rig(RIGS / "tribometer.toml")
@@ -57,7 +58,7 @@ def test_the_peak_velocity_is_that_of_the_sine() -> None:
 def test_the_amplifiers_power_is_that_of_table_4_1() -> None:
     volts = np.array([5.1, 10.3, 15.5, 20.7, 25.9])
     points = operating_points(TRIBOMETER, voltage_peak_to_peak=volts, voltage_offset=volts / 2)
-    assert points.actuator_power == approx([0.21, 0.84, 1.9, 3.39, 5.31], abs=0.005)
+    assert points.charging_power == approx([0.21, 0.84, 1.9, 3.39, 5.31], abs=0.005)
 
 
 def test_what_stays_in_the_rig_is_what_its_dampers_take() -> None:
@@ -80,8 +81,10 @@ def test_a_batch_is_its_single_points(model: str) -> None:
             sliding_speed=float(speeds[column]),
         )
         alone = simulate(one)
-        for name in ("friction_ratio", "friction_force", "vibration_amplitude", "actuator_power"):
+        for name in ("friction_ratio", "friction_force", "vibration_amplitude"):
             assert getattr(batch, name)[row, column] == approx(getattr(alone.friction, name), rel=1e-5), name
+        for name in POWERS:
+            assert getattr(batch, name)[row, column] == approx(getattr(alone.friction.power, name), rel=1e-5), name
         assert batch.dissipated_power[row, column] == approx(alone.vibration.dissipated_power, rel=1e-5)
         assert batch.status[row, column] == alone.vibration.status
 

@@ -91,7 +91,7 @@ def test_the_drive_keeps_its_proportion_of_offset() -> None:
     # from 0 V up: D 1.9 with U_max = U_pp
     study = studied("voltage")
     volts = study["voltage_peak_to_peak"].values
-    assert study["actuator_power"].values == approx(360e-9 * volts**2 * 22e3)
+    assert study["charging_power"].values == approx(360e-9 * volts**2 * 22e3)
 
 
 def test_velocity_ratio_is_sliding_over_peak_vibration() -> None:
@@ -104,7 +104,7 @@ def test_velocity_ratio_is_sliding_over_peak_vibration() -> None:
 def test_resonance_takes_the_least_voltage_and_amplifier_power() -> None:
     study = studied("power")
     assert int(np.nanargmin(study["voltage_peak_to_peak"])) == 2
-    assert int(np.nanargmin(study["actuator_power"])) == 2
+    assert int(np.nanargmin(study["charging_power"])) == 2
 
 
 def test_the_voltage_found_gives_the_friction_asked_for() -> None:
@@ -118,7 +118,7 @@ def test_what_no_voltage_reaches_has_a_reason_and_no_numbers() -> None:
     study = studied("power")
     assert study["status"].values[0] == "out_of_reach"
     assert "200 V does not reduce friction" in str(study["reason"].values[0])
-    assert np.isnan(study["actuator_power"].values[0])
+    assert np.isnan(study["power_to_supply"].values[0])
 
 
 def test_weights_slow_the_arm_as_one_over_the_root_of_its_mass() -> None:

@@ -244,11 +244,11 @@ def test_a_march_takes_drive_load_and_ramp_of_the_rig_by_name() -> None:
 
 def test_the_power_of_the_amplifier_needs_a_voltage_and_a_capacitance() -> None:
     # D 1.9: C U_max U_pp f = 360 nF 28 V 28 V 22 kHz
-    power = resolved_rig(REFERENCE).amplifier_power()
+    power = resolved_rig(REFERENCE).charging_power()
     assert power == approx(360e-9 * 28 * 28 * 22e3)
-    assert resolved_rig(replace(STATED, capacitance=None)).amplifier_power() is None
-    assert resolved_rig(read_rig(RIGS / "cutter_head.toml")).amplifier_power() is None
-    assert resolved_rig(STATED).amplifier_power() == approx(1.53e-6 * 6 * 4 * 16e3)  # 4 V about 4 V: up to 6 V
+    assert resolved_rig(replace(STATED, capacitance=None)).charging_power() is None
+    assert resolved_rig(read_rig(RIGS / "cutter_head.toml")).charging_power() is None
+    assert resolved_rig(STATED).charging_power() == approx(1.53e-6 * 6 * 4 * 16e3)  # 4 V about 4 V: up to 6 V
 
 
 @mark.parametrize(("offset", "highest"), [(0.0, 20.0), (-10.0, 30.0), (15.0, 35.0)])
@@ -257,10 +257,10 @@ def test_an_amplifier_feeds_a_capacitance_from_a_rail_at_the_highest_voltage_of_
 ) -> None:
     # D 1.9: C U_max U_pp f, of 360 nF at 40 V peak to peak and 22 kHz
     voltage = DriveVoltage(drive=Drive(frequency=22e3, voltage_peak_to_peak=40.0, voltage_offset=offset))
-    assert float(voltage.amplifier_power(capacitance=360e-9)) == approx(360e-9 * highest * 40.0 * 22e3)
+    assert float(voltage.charging_power(capacitance=360e-9)) == approx(360e-9 * highest * 40.0 * 22e3)
     low, high = voltage.range()
     assert (float(low), float(high)) == approx((offset - 20.0, offset + 20.0))
     low, high = voltage.range(voltage_peak_to_peak=10.0, voltage_offset=1.0)
     assert (float(low), float(high)) == approx((-4.0, 6.0))
-    at_half = voltage.amplifier_power(capacitance=360e-9, voltage_peak_to_peak=20.0, voltage_offset=0.0, frequency=11e3)
+    at_half = voltage.charging_power(capacitance=360e-9, voltage_peak_to_peak=20.0, voltage_offset=0.0, frequency=11e3)
     assert float(at_half) == approx(360e-9 * 10.0 * 20.0 * 11e3)

@@ -133,9 +133,9 @@ def test_the_arrays_of_a_simulation_hold_one_period_and_the_numbers_of_its_resul
     assert 2 * abs(np.mean(moved * turned)) == approx(2.5e-6, rel=1e-3)
     assert np.mean(pressed) == approx(3.0, rel=1e-3)
     assert "displacement_along" not in arrays.variables
-    numbers = {name: float(arrays[name].values) for name in ("friction_ratio", "friction_reduction", "actuator_power")}
+    numbers = {name: float(arrays[name].values) for name in ("friction_ratio", "friction_reduction", "charging_power")}
     assert numbers["friction_ratio"] + numbers["friction_reduction"] == approx(1.0)
-    assert numbers["actuator_power"] == approx(360e-9 * 28.0**2 * 22e3)  # D 1.9
+    assert numbers["charging_power"] == approx(360e-9 * 28.0**2 * 22e3)  # D 1.9
     about = arrays.attrs
     assert (about["normal_load_N"], about["contact_loss_fraction"]) == approx((3.0, 0.0))
     assert about["mean_displacement_m"] == approx(np.mean(moved), rel=1e-3)

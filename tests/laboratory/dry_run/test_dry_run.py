@@ -78,11 +78,13 @@ def test_the_current_of_a_triangle_is_that_of_its_slope_and_never_told_too_low()
     assert exact <= drive_load(setting, capacitance=1e-6).peak_current <= 1.19 * exact  # 18 % by truncation
 
 
-def test_the_map_test_draws_the_powers_of_table_4_1(power_map: Rig) -> None:
+def test_the_map_test_charges_the_capacitance_with_the_powers_of_table_4_1(power_map: Rig) -> None:
     found = dry_run(protocol_by_name_or_file("map_test"), rig=power_map)
-    powers = [point.load.actuator_power for point in found.points if point.load and point.load.actuator_power]
-    assert powers == pytest.approx([0.21, 0.84, 1.9, 3.39, 5.31], abs=0.006)
-    assert found.amplifier_energy == pytest.approx(4 * sum(powers))
+    powers = [point.load.power for point in found.points if point.load and point.load.power.charging_power]
+    assert [each.charging_power for each in powers] == pytest.approx([0.21, 0.84, 1.9, 3.39, 5.31], abs=0.006)
+    # the motion grows with the voltage, and turns more into heat
+    assert [each.power_to_supply for each in powers] == [each.dissipated_power for each in powers]
+    assert found.amplifier_energy == pytest.approx(4 * sum(each.power_to_supply for each in powers))
 
 
 def test_the_map_test_has_the_amplitudes_of_table_4_1(power_map: Rig) -> None:

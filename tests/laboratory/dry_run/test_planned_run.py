@@ -14,7 +14,7 @@ from sonolube.facts.protocol import Protocol, SetPoint, protocol_from
 from sonolube.laboratory.devices import DriveSetting
 from sonolube.laboratory.dry_run import HeatingAssumptions, drive_load, dry_run
 from sonolube.laboratory.dry_run.record import DriveLoad, DryRun, PlannedPoint, heating_over, rubbed_contact
-from sonolube.rig import Rig, operating_points, read_rig, thermal_solid
+from sonolube.rig import Rig, operating_points, power_to_supply, read_rig, thermal_solid
 
 RIGS = Path(__file__).parents[3] / "examples" / "rigs"
 ASSUMED = HeatingAssumptions(
@@ -49,25 +49,29 @@ DRIVE = {"kind": "drive", "voltage_peak_to_peak": "20 V", "voltage_offset": "10 
 
 
 def test_a_drive_that_is_off_loads_nothing_and_a_sine_by_its_capacitance() -> None:
-    assert drive_load(None, capacitance=1e-6) == DriveLoad(
-        peak_current=0.0, slew_rate=0.0, actuator_power=0.0, capacitive_power=0.0
-    )
+    off = drive_load(None, capacitance=1e-6)
+    assert (off.peak_current, off.slew_rate, off.power.power_to_supply, off.capacitive_power) == (0.0, 0.0, 0.0, 0.0)
     setting = DriveSetting(voltage_peak_to_peak=20.0, voltage_offset=-6.0, frequency=1e3)
     found = drive_load(setting, capacitance=1e-6)
     assert found.peak_current == approx(pi * 1e3 * 1e-6 * 20.0)
     # D 1.9 with the peak voltage of 16 V: twice it times the mean current of a half period, f C U
     without = drive_load(replace(setting, voltage_offset=6.0), capacitance=1e-6)
     centred = drive_load(replace(setting, voltage_offset=0.0), capacitance=1e-6)
-    assert found.actuator_power == approx(without.actuator_power)
-    assert found.actuator_power / centred.actuator_power == approx(16.0 / 10.0)
+    assert found.power.power_to_supply == approx(without.power.power_to_supply)
+    assert found.power.power_to_supply / centred.power.power_to_supply == approx(16.0 / 10.0)
+    assert found.power.text == "at least 320 mW"  # 1 uF 16 V 20 V 1 kHz; the heat of the motion is not known
+    moving = drive_load(setting, capacitance=1e-6, dissipated_power=2.5, peak_current=0.4)
+    assert (moving.power.text, moving.power.peak_current) == ("2.5 W", 0.4)
+    assert moving.peak_current == approx(found.peak_current)  # of the capacitance
     for capacitance in (0.0, -1e-6):
         with raises(InvalidInput, match="capacitance must be positive"):
             drive_load(None, capacitance=capacitance)
 
 
 def planned(time: float, lasts: float, power: float | None, **more: Any) -> PlannedPoint:
-    powers = {"actuator_power": power or 0.0, "capacitive_power": power or 0.0}
-    load = None if power is None else DriveLoad(peak_current=1.0, slew_rate=1.0, **powers)
+    supplied = power_to_supply(charging_power=power, dissipated_power=0.0)
+    assert supplied is not None
+    load = None if power is None else DriveLoad(peak_current=1.0, slew_rate=1.0, power=supplied, capacitive_power=power)
     return PlannedPoint(setting=SetPoint(time=time, step="1", kind="wait"), duration=lasts, load=load, **more)
 
 
@@ -185,6 +189,12 @@ def test_friction_and_amplitude_are_those_of_the_rig_at_the_load_of_the_protocol
     assert [point.load.peak_current for point in found.points if point.load] == approx(
         [0.0, 0.0, *[pi * 22e3 * 360e-9 * 20.0] * 4, 0.0]
     )
+    supplied = float(at.power_to_supply[0])
+    assert supplied == approx(float(at.dissipated_power[0]), rel=1e-12)
+    assert [point.load.power.power_to_supply for point in found.points if point.load] == approx(
+        [0.0, 0.0, *[supplied] * 4, 0.0]
+    )
+    assert any("with that of the computed motion they reach" in line for line in found.caveats)
     assert found.heating is not None
     assert found.heating.frictional_heat == approx((intrinsic + force) * 0.05)
     assert f"amplitude {at.amplitude_origin}; friction by {power_map.friction_model.name}" in found.caveats

@@ -22,6 +22,7 @@ from sonolube.laboratory.dry_run.report import (
     dry_run_sums,
     refusals_of,
 )
+from sonolube.rig import power_to_supply
 
 WAIT = {"kind": "wait", "duration": "1 s"}
 
@@ -32,7 +33,9 @@ def protocol(*steps: dict[str, Any], **limits: str) -> Protocol:
 
 
 def load(current: float, *, slew: float = 1e6, power: float = 1.0) -> DriveLoad:
-    return DriveLoad(peak_current=current, slew_rate=slew, actuator_power=power, capacitive_power=0.3)
+    supplied = power_to_supply(charging_power=power, dissipated_power=0.0)
+    assert supplied is not None
+    return DriveLoad(peak_current=current, slew_rate=slew, power=supplied, capacitive_power=0.3)
 
 
 def point(time: float, step: str, kind: str = "wait", *, lasts: float = 1.0, **more: Any) -> PlannedPoint:
@@ -240,7 +243,7 @@ def test_the_sums_are_those_of_times_samples_powers_and_rises() -> None:
     assert list(dry_run_sums(SUMMED)) == [
         ("duration", "1:32.5, about 3:32.5 with 1 prompt"),
         ("data", "1 recording, 24,000 samples, 0.192 MB"),  # 30 s at 400 Hz of two channels
-        ("drive", "at most 322 mA peak, 5.31 W of a linear amplifier, 444 J in all"),  # 5.31 W 80 s + 1.5 W 12.5 s
+        ("drive", "at most 322 mA peak, 5.31 W to supply, 444 J in all"),  # 5.31 W 80 s + 1.5 W 12.5 s
         ("friction", "12.3 J of work"),
         ("contact", "warms by 4.2 K at most"),
         ("actuator", "warms by 9.4 K at most"),
@@ -263,7 +266,7 @@ def test_sums_of_what_is_not_known_are_left_out() -> None:
         ("actuator", "warms by 9.4 K at most"),
     ]
     partly = replace(SUMMED, points=(*SUMMED.points[:2], replace(SUMMED.points[2], load=None)), heating=None)
-    assert dict(dry_run_sums(partly))["drive"] == "at most 322 mA peak, 5.31 W of a linear amplifier"
+    assert dict(dry_run_sums(partly))["drive"] == "at most 322 mA peak, 5.31 W to supply"
 
 
 def test_the_lines_are_columns_of_the_set_points_and_of_the_sums() -> None:

@@ -32,7 +32,7 @@ PREDICTION = LabelledArrays(
         "measure_share_left": over("measurement", 0.6, 0.7),
     },
     coordinates={},
-    attrs={"vibration_amplitude": 2.5e-6, "actuator_power": 6.25},
+    attrs={"vibration_amplitude": 2.5e-6, "power_to_supply": 6.25, "charging_power": 6.25, "power_is_at_least": 1},
 )
 
 
@@ -66,7 +66,13 @@ def test_a_predicted_quantity_in_json_has_its_intervals_by_their_percentage() ->
 def test_the_operating_point_has_the_amplitude_with_its_spread_and_a_power_that_is_known() -> None:
     assert results.operating_texts(PREDICTION) == [
         {"name": "vibration_amplitude", "label": "Vibration amplitude, zero to peak", "text": "2.5 um within 20 %"},
-        {"name": "actuator_power", "label": "Power drawn by the actuator", "text": "6.25 W"},
+        {"name": "power_to_supply", "label": "Power to supply", "text": "at least 6.25 W"},
+        {"name": "charging_power", "label": "Charge of the capacitance, D 1.9", "text": "6.25 W"},
     ]
-    undriven = LabelledArrays(variables=PREDICTION.variables, coordinates={}, attrs={"actuator_power": None})
+    assert results.power_object(PREDICTION) == {
+        **dict.fromkeys(("power_to_supply", "charging_power", "actuator_power"), 6.25),
+        "at_least": ["power_to_supply"],
+    }
+    undriven = LabelledArrays(variables=PREDICTION.variables, coordinates={}, attrs={})
     assert results.operating_texts(undriven) == []
+    assert results.power_object(undriven) == {"actuator_power": None}

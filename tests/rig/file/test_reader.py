@@ -86,7 +86,9 @@ def test_wear_about_the_gap_at_rest_states_the_rise_of_a_computed_motion() -> No
 
 def test_the_tribometer_draws_the_power_of_equation_1_9() -> None:
     # 360 nF, 28 V, 28 V peak to peak, 22 kHz
-    assert friction_point(read_rig(RIGS / "tribometer.toml")).actuator_power == approx(360e-9 * 28 * 28 * 22e3)
+    power = friction_point(read_rig(RIGS / "tribometer.toml")).power
+    assert power is not None
+    assert power.charging_power == approx(360e-9 * 28 * 28 * 22e3)
 
 
 def test_half_the_voltage_gives_half_the_amplitude() -> None:

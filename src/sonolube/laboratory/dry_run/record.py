@@ -28,7 +28,7 @@ class DriveLoad:
     Parameters
     ----------
     peak_current : float
-        Greatest magnitude of the current, of the capacitance alone where that of the motion is not known. [A]
+        Greatest magnitude of the current of the capacitance; `power` has it with that of the motion. [A]
     slew_rate : float
         Greatest rate of change of the voltage. [V/s]
     power : PowerToSupply
@@ -43,9 +43,13 @@ class DriveLoad:
     capacitive_power: float
 
 
-def _power(charging_power: float, dissipated_power: float | None) -> PowerToSupply:
+def _power(
+    charging_power: float, dissipated_power: float | None, peak_current: float | None = None
+) -> PowerToSupply:
     """Power to supply where the charge of the capacitance is known."""
-    found = power_to_supply(charging_power=charging_power, dissipated_power=dissipated_power)
+    found = power_to_supply(
+        charging_power=charging_power, dissipated_power=dissipated_power, peak_current=peak_current
+    )
     assert found is not None
     return found
 
@@ -88,7 +92,7 @@ def drive_load(
 
     Other waveforms are summed over 64 harmonics: the current of a square or sawtooth is limited by the amplifier alone,
     and that of a triangle comes out 18 % too high, by the overshoot of a truncated series.
-    The current of the motion, largest at resonance, comes on top where it is not given.
+    The current of the motion, largest at resonance, comes on top.
     """
     require_positive(capacitance=capacitance)
     if setting is None:
@@ -101,9 +105,9 @@ def drive_load(
         frequency=setting.frequency,
     )
     return DriveLoad(
-        peak_current=need.peak_current if peak_current is None else peak_current,
+        peak_current=need.peak_current,
         slew_rate=need.slew_rate,
-        power=_power(float(charge), dissipated_power),
+        power=_power(float(charge), dissipated_power, peak_current),
         capacitive_power=need.apparent_power,
     )
 

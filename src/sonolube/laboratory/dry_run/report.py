@@ -107,8 +107,14 @@ def caveats_of(found: DryRun) -> Iterator[str]:
                 f"static friction may reach {format_si(STATIC_FRICTION_FACTOR * force, 'N')} at the start, 1.35 times"
                 f" that of sliding (D 4.1.2), and trip limits.friction_force_maximum"
             )
-    if any(point.load and point.load.peak_current and point.peak_current is None for point in found.points):
-        yield "currents are those of the capacitance; near resonance that of the motion adds to them"
+    if any(point.load and point.load.peak_current for point in found.points):
+        highest = max((point.peak_current or 0.0 for point in found.points), default=0.0)
+        motion = (
+            f"with that of the computed motion they reach {format_si(highest, 'A')}"
+            if highest
+            else "near resonance that of the motion adds to them"
+        )
+        yield f"currents are those of the capacitance; {motion}"
     if found.heating is not None and found.heating.contact_rise is not None:
         yield (
             "the rise of the contact is the mean over its nominal area by heat of friction alone; asperities flash"

@@ -10,6 +10,7 @@ from pytest import MonkeyPatch, approx
 
 from sonolube.report.blocks import Rows
 from sonolube.report.results.design import friction_map as results
+from sonolube.rig import power_to_supply
 
 NAN = float("nan")
 RIG: Any = SimpleNamespace(
@@ -24,13 +25,15 @@ REDUCTION = np.array(
 )
 MAP = xr.Dataset(
     {
-        "friction_reduction": (("normal_load", "actuator_power", "sliding_speed"), REDUCTION),
-        "status": (("normal_load", "actuator_power", "sliding_speed"), np.isnan(REDUCTION).astype(int),
+        "friction_reduction": (("normal_load", "power_to_supply", "sliding_speed"), REDUCTION),
+        "status": (("normal_load", "power_to_supply", "sliding_speed"), np.isnan(REDUCTION).astype(int),
                    {"flag_meanings": "stable failed"}),
-        "reason": (("normal_load", "actuator_power", "sliding_speed"), np.where(np.isnan(REDUCTION), "too fast", "")),
+        "reason": (("normal_load", "power_to_supply", "sliding_speed"), np.where(np.isnan(REDUCTION), "too fast", "")),
+        "charging_power": ("power_to_supply", [0.5, 0.75]),
+        "dissipated_power": ("power_to_supply", [1.0, 2.0]),
         "saturation_power": (("normal_load", "sliding_speed"), [[NAN, NAN, NAN], [1.5, NAN, 4.0]]),
     },
-    coords={"normal_load": [3.0, 5.0], "actuator_power": [1.0, 2.0], "sliding_speed": [0.02, 0.04, 0.06]},
+    coords={"normal_load": [3.0, 5.0], "power_to_supply": [1.0, 2.0], "sliding_speed": [0.02, 0.04, 0.06]},
     attrs={"map": "velocity-power"},
 )  # fmt: skip
 
@@ -42,14 +45,17 @@ def amplitude(monkeypatch: MonkeyPatch) -> None:
     monkeypatch.setattr("sonolube.rig.amplitude_labels", lambda rig: labels)
 
 
-GREATEST = ("most reduction", "0.6 at 20 mm/s, 5 N, 2 W")
+GREATEST = ("most reduction", "0.6 at 20 mm/s, 5 N, 2 W to supply")
+ENERGY = power_to_supply(charging_power=0.75, dissipated_power=2.0)
+assert ENERGY is not None
+BALANCE = ("energy", ENERGY.energy_balance)
 RIDGE = ("ridge", "1.5 W to 4 W; beyond it doubling the power buys less than 5 %")
 
 
 def test_a_map_in_words_has_the_greatest_reduction_with_its_place_the_ridge_and_failures() -> None:
     head, rows = results.map_blocks(RIG, MAP)
     assert head == "Own rig, 12 points, friction model kinematic"
-    assert rows == Rows([("amplitude", "stated"), GREATEST, RIDGE, ("without result", "1: too fast")])
+    assert rows == Rows([("amplitude", "stated"), GREATEST, BALANCE, RIDGE, ("without result", "1: too fast")])
     nothing = MAP.assign(
         friction_reduction=MAP["friction_reduction"] * NAN, saturation_power=MAP["saturation_power"] * NAN
     )
@@ -66,7 +72,10 @@ def test_a_map_in_json_has_its_greatest_point_in_si() -> None:
             "friction_reduction": {"value": approx(0.6), "unit": ""},
             "sliding_speed": {"value": approx(0.02), "unit": "m/s"},
             "normal_load": {"value": approx(5.0), "unit": "N"},
-            "actuator_power": {"value": approx(2.0), "unit": "W"},
+            "power_to_supply": {"value": approx(2.0), "unit": "W"},
+            "charging_power": {"value": approx(0.75), "unit": "W"},
+            "dissipated_power": {"value": approx(2.0), "unit": "W"},
+            "actuator_power": {"value": approx(0.75), "unit": "W"},
         },
     }  # fmt: skip
 
@@ -74,22 +83,16 @@ def test_a_map_in_json_has_its_greatest_point_in_si() -> None:
 def test_the_page_of_a_map_has_the_greatest_reduction_of_each_panel() -> None:
     page = results.map_page(RIG, MAP, None, None)
     assert (page.name, page.title) == (
-        "map", "Friction reduction over sliding speed and power drawn by the actuator: Own rig"
+        "map", "Friction reduction over sliding speed and power to supply: Own rig"
     )  # fmt: skip
-    assert list(page.facts) == [("points", "12"), GREATEST, RIDGE]
+    assert list(page.facts) == [("points", "12"), GREATEST, BALANCE, RIDGE]
     panels, statuses, failures = page.tables
-    assert panels.heads == (
-        "Normal load",
-        "Friction reduction",
-        "Sliding speed",
-        "Power drawn by the actuator",
-        "Ridge",
-    )
+    assert panels.heads == ("Normal load", "Friction reduction", "Sliding speed", "Power to supply", "Ridge")
     assert panels.rows == (("3 N", "0.5", "40 mm/s", "2 W", ""), ("5 N", "0.6", "20 mm/s", "2 W", "1.5 W to 4 W"))
     assert statuses.rows == (("stable", "11", "91.7%"), ("failed", "1", "8.3%"))
     assert failures.rows == (("too fast", "1"),)
     flat = MAP.drop_vars("saturation_power")
-    assert results.map_page(RIG, flat, None, None).tables[0].heads[-1] == "Power drawn by the actuator"
+    assert results.map_page(RIG, flat, None, None).tables[0].heads[-1] == "Power to supply"
     assert results.map_page(RIG, flat, None, None).tables[0].rows[0] == ("3 N", "0.5", "40 mm/s", "2 W")
     # equal panels are one, which a sentence says
     equal = flat.assign(friction_reduction=flat["friction_reduction"].isel(normal_load=1, drop=True).broadcast_like(
@@ -118,7 +121,9 @@ def test_the_caption_names_the_dashed_line_and_the_circles_where_they_are_drawn(
 
 
 def test_a_map_over_amplitude_has_the_amplitude_in_its_panels() -> None:
-    power = MAP.rename(actuator_power="vibration_amplitude").drop_vars("saturation_power")
+    power = MAP.rename(power_to_supply="vibration_amplitude").drop_vars(
+        ["saturation_power", "charging_power", "dissipated_power"]
+    )
     panels = results.map_page(RIG, power.assign_attrs(map="velocity-amplitude"), None, None).tables[0]
     assert panels.heads[-1] == "Vibration amplitude, zero to peak"
 

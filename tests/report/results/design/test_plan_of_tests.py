@@ -43,7 +43,9 @@ def plan(*, specimens: int = 1, **changes: Any) -> Any:
             sliding_speed=np.array([0.02, 0.04, 0.06]),
             voltage_peak_to_peak=np.array([28.0, 10.0, NAN]),
             vibration_amplitude=np.array([2.5e-6, 1e-6, 1.5e-6]),
-            actuator_power=np.array([6.25, 1.0, NAN]),
+            power_to_supply=np.array([6.25, 1.0, NAN]),
+            charging_power=np.array([6.25, 0.5, NAN]),
+            dissipated_power=np.array([NAN, 1.0, NAN]),
             mean_temperature_rise=np.array([NAN, 1.0, 12.0]),
             refused=("", "beyond the amplifier", ""),
         ),
@@ -53,7 +55,7 @@ def plan(*, specimens: int = 1, **changes: Any) -> Any:
         "interval": np.array([[0.2, 0.3, 0.4], [0.55, 0.7, 0.85]]),
         "chance": np.array([0.995, 0.5, 0.85]),
         "information": np.array([0.123, 0.2, 0.4]),
-        "limits": SimpleNamespace(actuator_power=10.0, mean_temperature_rise=50.0),
+        "limits": SimpleNamespace(power_to_supply=10.0, mean_temperature_rise=50.0),
         "materials": ("brass", "steel"),
     }
     return SimpleNamespace(**(values | changes))
@@ -84,7 +86,7 @@ def test_facts_have_difference_power_scatter_weights_and_the_last_information() 
 def test_points_are_numbered_in_the_order_of_the_plan_with_dashes_for_what_is_not_known() -> None:
     assert results.point_rows(plan()) == [
         ["1", "5 N", "60 mm/s", "-", "1.5 um", "0.60 (0.40 to 0.85)", "85 %", "-", "12 K", "0.400 bit"],
-        ["2", "3 N", "20 mm/s", "28 V", "2.5 um", "0.35 (0.20 to 0.55)", "100 %", "6.25 W", "-", "0.123 bit"],
+        ["2", "3 N", "20 mm/s", "28 V", "2.5 um", "0.35 (0.20 to 0.55)", "100 %", "at least 6.25 W", "-", "0.123 bit"],
     ]
     assert len(results.POINT_HEADS) == 10
 
@@ -107,7 +109,7 @@ def test_limits_of_the_rig_stand_beside_those_of_the_protocol_where_they_were_st
         ("Rise of the contact by friction", "50 K"),
     ]
     limits.voltage_maximum, limits.friction_force_maximum = 0.0, None
-    bare = SimpleNamespace(actuator_power=None, mean_temperature_rise=None)
+    bare = SimpleNamespace(power_to_supply=None, mean_temperature_rise=None)
     assert results.limit_rows(plan(limits=bare), limits) == [
         ("Voltage, its offset included", "not planned: the vibration is switched by hand"),
         ("Friction force", "nan N"),
@@ -150,6 +152,8 @@ def test_a_plan_in_json_counts_points_from_one_and_lists_what_was_left_out(conte
     assert first["voltage_peak_to_peak"] == {"value": None, "unit": "V"}
     assert first["normal_load"] == {"value": 5.0, "unit": "N"}
     assert first["friction_ratio"] == {"median": approx(0.6), "interval_80": approx([0.4, 0.85])}
+    assert second["power_to_supply"] == second["actuator_power"] == {"value": 6.25, "unit": "W"}
+    assert second["at_least"] == ["power_to_supply"]
     assert (first["information"], second["information"]) == approx((0.4, 0.123))
     assert content["left_out"] == [
         {"sliding_speed": {"value": 0.04, "unit": "m/s"}, "vibration_amplitude": {"value": 1e-6, "unit": "m"},

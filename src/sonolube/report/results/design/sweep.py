@@ -190,6 +190,7 @@ def count_table(title: str, counted: str, counts: Mapping[str, int], *, total: i
 
 
 _LABELS = {"energy_balance": "energy"}
+_FORMER = "actuator_power"  # key of the charging power in JSON before it had its own
 
 
 def sweep_blocks(rig: Rig, plan: SweepPlan, result: "xr.Dataset") -> list[Block]:
@@ -260,8 +261,11 @@ def _least(plan: SweepPlan, result: "xr.Dataset") -> dict[str, Any]:
 
 
 def _least_texts(plan: SweepPlan, result: "xr.Dataset") -> list[tuple[str, str]]:
-    """The same as text."""
-    return [(_LABELS.get(name, name), _as_text(name, value)) for name, value in _least(plan, result).items()]
+    """The same as text, "at least" before a lower bound."""
+    least = _least(plan, result)
+    bounds = least.pop("at_least", ())
+    texts = {name: _as_text(name, value) for name, value in least.items() if name != _FORMER}
+    return [(_LABELS.get(name, name), f"at least {text}" if name in bounds else text) for name, text in texts.items()]
 
 
 def _as_text(name: str, value: Any) -> str:
