@@ -159,6 +159,7 @@ def standard_normals(count: int, *, columns: int, seed: int) -> Floats:
 
 
 _NORMAL_GRID: Final = np.linspace(-8.0, 8.0, 4097)
+_LEAST_DEVIATION: Final = 1e-12  # in place of none
 
 
 @cache
@@ -179,16 +180,30 @@ def bounded_normals(
 
     between g and h, with the distribution function interpolated: shares to 1e-6, deviates beyond 8 left out.
     """
-    shares, side = _normal_shares(), np.maximum(deviation, 1e-12)
+    side = np.maximum(deviation, _LEAST_DEVIATION)
+    above = _normal_share((mean - high) / side)
+    found = above + _normal_share(-normals) * (_normal_share((mean - low) / side) - above)
+    return np.clip(mean - side * np.interp(found, _normal_shares(), _NORMAL_GRID), low, high)
 
-    def share(deviates: ArrayLike) -> Floats:
-        steps = np.clip((np.asarray(deviates) + 8.0) * 256.0, 0.0, 4095.999)
-        below = steps.astype(np.intp)
-        return np.asarray(shares[below] + (steps - below) * (shares[below + 1] - shares[below]))
 
-    above = share((mean - high) / side)
-    found = above + share(-normals) * (share((mean - low) / side) - above)
-    return np.clip(mean - side * np.interp(found, shares, _NORMAL_GRID), low, high)
+def bounded_share(
+    mean: Floats, deviation: Floats, value: float, *, low: Floats | float, high: Floats | float
+) -> Floats:
+    """Share of the numbers of `bounded_normals` that are no larger than a value."""
+    side = np.maximum(deviation, _LEAST_DEVIATION)
+    above, all_of_them = _normal_share((mean - high) / side), _normal_share((mean - low) / side)
+    between = np.maximum(all_of_them - above, 0.0)
+    certain = np.where(np.clip(mean, low, high) <= value, 1.0, 0.0)
+    share = (all_of_them - _normal_share((mean - np.clip(value, low, high)) / side)) / np.maximum(between, 1e-9)
+    share = np.where(np.asarray(low) > value, 0.0, np.where(np.asarray(high) <= value, 1.0, share))
+    return np.where(between > 1e-9, share, certain)
+
+
+def _normal_share(deviates: Floats) -> Floats:
+    """Distribution function of the standard normal distribution, interpolated."""
+    steps = np.clip((np.asarray(deviates) + 8.0) * 256.0, 0.0, 4095.999)
+    below, shares = steps.astype(np.intp), _normal_shares()
+    return np.asarray(shares[below] + (steps - below) * (shares[below + 1] - shares[below]))
 
 
 def log_hyperprior(closure: Closure, hyperparameters: Floats, prior: Prior = POPULATION_PRIOR) -> Floats:

@@ -121,18 +121,22 @@ class RigInputs:
         return replace(self, decay=length, amplitude=amplitude, friction=friction)
 
     def at(
-        self, *, vibration_amplitude: ArrayLike | None = None, sliding_speed: ArrayLike | None = None
+        self,
+        *,
+        vibration_amplitude: ArrayLike | None = None,
+        sliding_speed: ArrayLike | None = None,
+        frequency: ArrayLike | None = None,
     ) -> UncertainConditions:
-        """Conditions of the rig, at other amplitudes or speeds where given; arrays of one length or numbers."""
+        """Conditions of the rig, at other settings where given; arrays of one length or numbers."""
         amplitude = self.amplitude.value if vibration_amplitude is None else vibration_amplitude
         speed = self.sliding_speed if sliding_speed is None else sliding_speed
-        a, v = np.broadcast_arrays(np.atleast_1d(np.asarray(amplitude, float)), np.asarray(speed, float))
+        f_set = self.frequency if frequency is None else frequency
+        a, v, f = np.broadcast_arrays(
+            np.atleast_1d(np.asarray(amplitude, float)), np.asarray(speed, float), np.asarray(f_set, float)
+        )
         length = self.decay.value if self.measured_length else REFERENCE_DECAY_LENGTH
         conditions = Conditions(
-            vibration_amplitude=a,
-            frequency=np.full(a.shape, self.frequency),
-            sliding_speed=v,
-            decay_length=np.full(a.shape, length),
+            vibration_amplitude=a, frequency=f, sliding_speed=v, decay_length=np.full(a.shape, length)
         )
         if not self.direction.is_normal:
             conditions = within_plane(conditions, self.direction)

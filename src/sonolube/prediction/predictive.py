@@ -22,7 +22,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.prediction.evidence import Conditions, TestedRig, UncertainConditions
-from sonolube.prediction.hierarchy import bounded_normals, log_normal_density, standard_normals
+from sonolube.prediction.hierarchy import bounded_normals, bounded_share, log_normal_density, standard_normals
 from sonolube.prediction.posterior import Posterior, RigDraws, rig_draws, systematic_rows
 
 _FREEDOM: Final = 2.0  # degrees of freedom of the errors of runs
@@ -208,6 +208,12 @@ class RigPrediction:
         low, high = self.draws.bounds(at)
         rows = np.arange(self.count) % len(mean)
         return bounded_normals(mean[rows], deviation[rows], deviates, low=low[rows], high=high[rows])
+
+    def chances(self, at: Conditions, *, friction_ratio: float) -> Floats:
+        """Probability at each of m conditions that the friction ratio is no larger than a value, shape (m,)."""
+        mean, deviation = self.draws.normals(at)
+        low, high = self.draws.bounds(at)
+        return np.asarray(bounded_share(mean, deviation, friction_ratio, low=low, high=high).mean(axis=0))
 
 
 def rig_prediction(

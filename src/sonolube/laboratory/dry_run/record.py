@@ -43,13 +43,9 @@ class DriveLoad:
     capacitive_power: float
 
 
-def _power(
-    charging_power: float, dissipated_power: float | None, peak_current: float | None = None
-) -> PowerToSupply:
+def _power(charging_power: float, dissipated_power: float | None, peak_current: float | None = None) -> PowerToSupply:
     """Power to supply where the charge of the capacitance is known."""
-    found = power_to_supply(
-        charging_power=charging_power, dissipated_power=dissipated_power, peak_current=peak_current
-    )
+    found = power_to_supply(charging_power=charging_power, dissipated_power=dissipated_power, peak_current=peak_current)
     assert found is not None
     return found
 

@@ -1,0 +1,141 @@
+"""Chances that a rig reaches a reduction of friction, by the distribution that `predict` has of its friction ratio."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sonolube.checks import Floats
+from sonolube.errors import InvalidInput
+from sonolube.prediction.applicability import applicability
+from sonolube.prediction.inputs import RigInputs, own_runs, rig_inputs
+from sonolube.prediction.posterior import learned
+from sonolube.prediction.predictive import RigPrediction, rig_prediction
+from sonolube.prediction.within_plane import plane_posterior
+from sonolube.rig import Rig
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_DRAWS: Final = 1000  # each of which has a distribution in closed form
+_AT_ONCE: Final = 512  # conditions, to bound memory
+_AMPLITUDES: Final = 257  # among which the least one is sought
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class ReductionChances:
+    """Chances that friction on a rig falls by a share, and by how much it falls.
+
+    Parameters
+    ----------
+    inputs : RigInputs
+    prediction : RigPrediction
+    runs : int
+        Own runs that the prediction rests on.
+    """
+
+    inputs: RigInputs
+    prediction: RigPrediction
+    runs: int
+
+    def of(
+        self,
+        friction_reduction: float,
+        *,
+        vibration_amplitude: ArrayLike,
+        frequency: ArrayLike | None = None,
+        sliding_speed: ArrayLike | None = None,
+    ) -> Floats:
+        """Probability that friction falls by a share and more.
+
+        Parameters
+        ----------
+        friction_reduction : float
+            Target, between 0 and 1. []
+        vibration_amplitude : array_like
+            Zero to peak; NaN gives NaN. [m]
+        frequency, sliding_speed : array_like, broadcast against `vibration_amplitude`
+            Those of the rig by default. [Hz], [m/s]
+
+        Returns
+        -------
+        ndarray, shape of the broadcast arguments
+            0 without vibration. []
+        """
+        f = self.inputs.frequency if frequency is None else frequency
+        v = self.inputs.sliding_speed if sliding_speed is None else sliding_speed
+        a, f, v = np.broadcast_arrays(*(np.asarray(each, dtype=np.float64) for each in (vibration_amplitude, f, v)))
+        found = np.where(np.isnan(a), np.nan, 0.0)
+        rows = np.flatnonzero(np.nan_to_num(a) > 0)
+        for part in np.array_split(rows, -(-rows.size // _AT_ONCE) or 1):
+            if part.size:
+                at = self.inputs.at(
+                    vibration_amplitude=a.flat[part], frequency=f.flat[part], sliding_speed=v.flat[part]
+                )
+                found.flat[part] = self.prediction.chances(at.conditions, friction_ratio=1 - friction_reduction)
+        return found
+
+    def least_amplitude(
+        self, friction_reduction: float, *, confidence: float, highest: float, frequency: float
+    ) -> float | None:
+        """Least amplitude, in m, up to a highest one, at which a reduction has a chance; None where none has."""
+        amplitudes = highest * np.geomspace(1e-3, 1.0, _AMPLITUDES)
+        chances = self.of(friction_reduction, vibration_amplitude=amplitudes, frequency=frequency)
+        enough = np.flatnonzero(chances >= confidence)
+        if not enough.size:
+            return None
+        first = int(enough[0])
+        if first == 0:
+            return float(amplitudes[0])
+        share = (confidence - chances[first - 1]) / (chances[first] - chances[first - 1])
+        return float(np.exp(np.interp(share, [0, 1], np.log(amplitudes[first - 1 : first + 1]))))
+
+    def interval(
+        self, *, vibration_amplitude: float, frequency: float | None = None, sliding_speed: float | None = None
+    ) -> tuple[float, float, float]:
+        """Ends of the 80 % interval of the friction ratio, and its median between them, by `RigPrediction.ratios`."""
+        at = self.inputs.at(vibration_amplitude=vibration_amplitude, frequency=frequency, sliding_speed=sliding_speed)
+        low, middle, high = np.quantile(self.prediction.ratios(at.conditions)[:, 0], [0.1, 0.5, 0.9])
+        return float(low), float(middle), float(high)
+
+
+def reduction_chances(rig: Rig, *, runs: "xr.Dataset | None" = None) -> ReductionChances:
+    """Chances that a rig reaches a reduction of friction.
+
+    Parameters
+    ----------
+    rig : Rig
+    runs : xarray.Dataset, optional
+        Own measured runs over `run`, as `predict` takes them.
+
+    Returns
+    -------
+    ReductionChances
+
+    Raises
+    ------
+    InvalidInput
+        If `predict` refuses the rig or its runs, or knows of no interval, as of a lubricated contact.
+    """
+    limits = applicability(rig)
+    if limits.refusal:
+        raise InvalidInput(limits.refusal)
+    if limits.any_ratio and runs is None:
+        raise InvalidInput(f"{rig.title}: chances of a reduction need a dry contact, or runs of your own")
+    inputs = rig_inputs(rig, takes_plane=True)
+    own = None if runs is None else own_runs(runs, inputs, title=rig.title)
+    posterior = learned().friction if inputs.direction.is_normal else plane_posterior()
+    tested = None if own is None else own.tested
+    found = rig_prediction(posterior, inputs.at(), count=_DRAWS, own=tested)
+    return ReductionChances(inputs=inputs, prediction=found, runs=0 if tested is None else tested.friction_ratio.size)
+
+
+def odds_text(chance: float) -> str:
+    """Chance in words, in tenths, as "7 chances in 10"."""
+    tenths = int(np.floor(10 * chance + 1e-9))
+    if tenths == 10:
+        return "10 chances in 10"
+    if tenths == 0:
+        return "less than 1 chance in 10"
+    return f"{tenths} {'chance' if tenths == 1 else 'chances'} in 10"
