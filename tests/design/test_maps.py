@@ -31,7 +31,11 @@ SPEEDS, VOLTS, LOADS = np.linspace(0.02, 0.2, 7), np.array([5.1, 10.3, 15.5, 20.
 
 def test_powers_and_stresses_are_those_of_table_4_1() -> None:
     computed = velocity_power_map(RIG, sliding_speed=SPEEDS, voltage_peak_to_peak=VOLTS, normal_load=LOADS)
-    assert computed["actuator_power"].values == approx([0.21, 0.84, 1.9, 3.39, 5.31], abs=0.005)
+    of_charge = computed["charging_power"].isel(normal_load=0).values
+    assert of_charge == approx([0.21, 0.84, 1.9, 3.39, 5.31], abs=0.005)
+    heat = computed["dissipated_power"].isel(sliding_speed=0).values
+    assert np.all(heat > of_charge)  # at resonance
+    assert computed["power_to_supply"].values == approx(heat)
     assert computed["nominal_pressure"].values[[0, 4, 6]] == approx([23.8e6, 55.6e6, 71.4e6], abs=0.05e6)  # E34
     assert dict(computed["friction_reduction"].sizes) == {
         "normal_load": 7,

@@ -42,7 +42,7 @@ def test_a_grid_holds_the_single_operating_points() -> None:
         rig = read_rig(RIG_FILE, changes=[f"contact.roughness.rms_height={height} m"])
         known = operating_points(rig, voltage_peak_to_peak=volts[:, np.newaxis], sliding_speed=speeds)
         rows = found.sel(rms_height=height)
-        for name in ("vibration_amplitude", "vibration_velocity", "actuator_power", "dissipated_power"):
+        for name in ("vibration_amplitude", "vibration_velocity", "power_to_supply", "dissipated_power"):
             assert rows[name].values == approx(getattr(known, name), rel=1e-4), name
         assert rows["friction_ratio"].values == approx(known.friction_ratio, abs=1e-4)
 

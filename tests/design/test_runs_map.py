@@ -164,15 +164,15 @@ def power_map() -> xr.Dataset:
     found = a_map(
         "velocity-power", normal_load=[2.0, 4.0, 6.0], voltage_peak_to_peak=[10.0, 20.0], sliding_speed=[0.0, 0.1]
     )
-    return found.assign_coords(actuator_power=("voltage_peak_to_peak", [1.0, 4.0]))
+    return found.assign_coords(power_to_supply=(("normal_load", "voltage_peak_to_peak"), [[1.0, 4.0]] * 3))
 
 
 def test_a_power_follows_from_the_voltage_of_a_run_where_none_was_measured() -> None:
     known = {"sliding_speed": [0.05] * 3, "normal_load": [4.0] * 3, "friction_reduction": [0.3] * 3}
     placed, _ = runs_on_map(runs(**known, voltage_peak_to_peak=[15.0, 20.0, 25.0]), RIG, power_map())
-    assert placed["actuator_power"].values.tolist() == [2.5, 4.0]  # halfway; 25 V lie beyond the map
+    assert placed["power_to_supply"].values.tolist() == [2.5, 4.0]  # halfway; 25 V lie beyond the map
     measured, _ = runs_on_map(runs(**known, actuator_power=[2.0, 3.0, 1.0]), RIG, power_map())
-    assert measured["actuator_power"].values.tolist() == [2.0, 3.0, 1.0]
+    assert measured["power_to_supply"].values.tolist() == [2.0, 3.0, 1.0]
 
 
 def test_a_pressure_follows_from_the_load_of_a_run_or_of_the_rig() -> None:
@@ -209,14 +209,14 @@ def test_the_map_between_runs_spans_them_with_the_names_of_its_axes() -> None:
     rng = np.random.default_rng(3)
     speed, power = rng.uniform(0.05, 0.2, 9), rng.uniform(1.0, 5.0, 9)
     measured = runs(
-        sliding_speed=speed.tolist(), actuator_power=power.tolist(), friction_reduction=(power / 9).tolist()
+        sliding_speed=speed.tolist(), power_to_supply=power.tolist(), friction_reduction=(power / 9).tolist()
     )
     found = runs_map(measured, kind="velocity-power")
     assert found is not None
-    assert dict(found.sizes) == {"actuator_power": 61, "sliding_speed": 61}
+    assert dict(found.sizes) == {"power_to_supply": 61, "sliding_speed": 61}
     assert found["sliding_speed"].values[[0, -1]] == approx([speed.min(), speed.max()])
-    assert found["actuator_power"].values[[0, -1]] == approx([power.min(), power.max()])
-    expected = np.broadcast_to(found["actuator_power"].values[:, np.newaxis] / 9, (61, 61))
+    assert found["power_to_supply"].values[[0, -1]] == approx([power.min(), power.max()])
+    expected = np.broadcast_to(found["power_to_supply"].values[:, np.newaxis] / 9, (61, 61))
     assert found["friction_reduction"].values == approx(expected, abs=0.01)
     assert found.attrs["title"] == "Friction reduction between 9 measured runs"
     assert (found.attrs["map"], found["sliding_speed"].attrs["units"]) == ("velocity-power", "m/s")

@@ -19,7 +19,7 @@ def test_one_swept_key_gives_curves_of_friction_amplitude_and_powers() -> None:
     assert [panel.y.text for panel in chart.panels] == [
         "Friction ratio",
         "Amplitude [µm]",
-        "Power of the amplifier [W]",
+        "Power to supply [W]",
         "Power dissipated [W]",
     ]
     ratio, amplitude = (panel.parts[0] for panel in chart.panels[:2])

@@ -56,7 +56,7 @@ def test_every_sample_is_the_rig_of_its_coordinates() -> None:
 def test_an_outcome_proportional_to_a_normal_entry_is_normal(tmp_path: Path) -> None:
     # the power of D 1.9 is proportional to the capacitance, 360 nF 28 V 28 V 22 kHz = 6.209 W
     path = rig_with(tmp_path, '"stack.free_capacitance" = "normal 5 %"')
-    found = outcome_statistics(propagate(path, outcome="actuator_power", samples=256))
+    found = outcome_statistics(propagate(path, outcome="charging_power", samples=256))
     exact = stats.norm(6.209, 0.05 * 6.209)
     assert found.mean.value == approx(exact.mean(), rel=1e-3)
     assert found.standard_deviation.value == approx(exact.std(), rel=0.02)

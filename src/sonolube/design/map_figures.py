@@ -16,7 +16,7 @@ from sonolube.vocabulary import quantity
 if TYPE_CHECKING:
     import xarray as xr
 
-_SAME_AXES = 0.01  # relative, which nobody sees along an axis
+_SAME_AXES = 0.01  # of the largest value of an axis, which nobody sees along it
 _SAME_PANELS = 0.005  # of the friction reduction, which nobody sees in contours of 5 %
 
 
@@ -60,14 +60,14 @@ def same_panels(computed: "xr.Dataset") -> bool:
     """Whether every panel of a map shows the same friction reduction.
 
     True where the panels, of which there are several, differ nowhere by more than 0.005, a tenth of a contour step,
-    lack a result at the same points, and have one vertical axis within 1 %.
+    lack a result at the same points, and have one vertical axis within 1 % of its end.
     """
     _, up, panel = map_layout(computed)
     if panel is None or computed.sizes[panel] < 2:
         return False
     if panel in computed[up].dims:
-        first = computed[up].isel({panel: 0})
-        if bool((np.abs(computed[up] - first) > _SAME_AXES * np.abs(first)).any()):
+        heights = computed[up]
+        if float(np.abs(heights - heights.isel({panel: 0})).max()) > _SAME_AXES * float(heights.max()):
             return False
     reduction = computed["friction_reduction"]
     missing = reduction.isnull()
@@ -303,5 +303,6 @@ def _panel_title(part: "xr.Dataset", panel: str) -> str:
     if panel == "voltage_peak_to_peak":
         volts, watts = float(part[panel]), part[map_power(part)].values
         low, high = (format_si(float(end), "W") for end in (watts.min(), watts.max()))
-        return f"{format_si(volts, 'V')}, {low if low == high else f'{low} to {high}'}"
+        is_one = float(np.ptp(watts)) <= _SAME_AXES * float(watts.max())
+        return f"{format_si(volts, 'V')}, {high if is_one else f'{low} to {high}'}"
     return f"{format_si(float(part[panel]), 'N')}, {format_si(float(part['nominal_pressure']), 'Pa')}"

@@ -26,7 +26,7 @@ def test_measured_runs_are_drawn_and_interpolated_where_they_are_enough(
     expected = {"map.html", f"{name}.png", f"{name}.nc", f"{name}-measured.png", f"{name}-measured.nc"}
     assert {Path(path).name for path in answer["files"]} == expected
     with xr.open_dataset(tmp_path / f"{name}-measured.nc") as interpolated:
-        middle = interpolated.sel(sliding_speed=0.1, actuator_power=3.0, method="nearest")
+        middle = interpolated.sel(sliding_speed=0.1, power_to_supply=3.0, method="nearest")
         assert float(middle["friction_reduction"]) == approx(0.38, abs=0.01)
 
 

@@ -115,7 +115,7 @@ def test_the_front_is_drawn_over_the_feasible_designs_with_its_ends_named() -> N
         (5.0, 40.0, "21.50 kHz, 25 V"),
         (8.0, 10.0, "22.25 kHz, 60 V"),
     ]
-    assert (panel.x.text, panel.y.text) == ("Power of the amplifier [W]", "Heat in the actuator [W]")
+    assert (panel.x.text, panel.y.text) == ("Power to supply [W]", "Heat in the actuator [W]")
     alone: Any = SimpleNamespace(**{**vars(OPTIMUM), "front": (FIRST,)})
     assert len([part for part in front_chart(alone).panels[0].parts if isinstance(part, Note)]) == 1
 
@@ -173,7 +173,7 @@ def test_the_dataset_has_a_row_for_every_design() -> None:
     found = designs_dataset(OPTIMUM)
     assert found.sizes["design"] == 6
     assert found["frequency"].values.tolist() == SCREENING.frequency.tolist()
-    assert found["actuator_power"].values.tolist() == SCREENING.objectives["power"].tolist()
+    assert found["power_to_supply"].values.tolist() == SCREENING.objectives["power"].tolist()
     assert found["heat_rate"].values.tolist() == SCREENING.objectives["heat"].tolist()
     assert found["tip_mass"].values.tolist() == [0.1] * 3 + [0.2] * 3
     assert found["actuator"].values.tolist() == ["own"] * 3 + ["nac2023"] * 3

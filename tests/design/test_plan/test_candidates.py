@@ -97,13 +97,13 @@ def test_the_drive_follows_the_amplitude_in_proportion_and_its_power_by_the_squa
     half, whole = found.voltage_peak_to_peak[[-2, -1]]
     assert (half, whole) == approx((INPUTS.voltage_peak_to_peak / 2, INPUTS.voltage_peak_to_peak))  # type: ignore[operator]
     assert found.voltage_offset[[-2, -1]] == approx([RIG.drive.voltage_offset / 2, RIG.drive.voltage_offset])
-    assert found.actuator_power[-1] == approx(4 * found.actuator_power[-2])
+    assert found.charging_power[-1] == approx(4 * found.charging_power[-2])
     assert RIG.capacitance is not None or RIG.stack is not None
     unknown = candidate_tests(
         RIG, replace(INPUTS, voltage_peak_to_peak=None), factors([3.0], [0.05], [own]), limits=RigLimits()
     )
     assert np.isnan(unknown.voltage_peak_to_peak).all()
-    assert np.isnan(unknown.actuator_power).all()
+    assert np.isnan(unknown.power_to_supply).all()
     assert not unknown.voltage_offset.any()
 
 
@@ -132,7 +132,7 @@ def test_what_exceeds_a_limit_says_by_how_much() -> None:
     assert set(free.refused) == {""}
     at_limit = candidates(points, limits=RigLimits(voltage_maximum=float(reach[-1])))
     assert set(at_limit.refused) == {""}
-    strict = candidates(points, limits=RigLimits(voltage_maximum=0.99 * float(reach[-1]), actuator_power=1e-3))
+    strict = candidates(points, limits=RigLimits(voltage_maximum=0.99 * float(reach[-1]), power_to_supply=1e-3))
     assert strict.refused[-1].startswith("drive reaches ")
     assert "; amplifier would supply " in strict.refused[-1]
     assert strict.refused[-1].endswith(", limit 1 mW")
