@@ -16,7 +16,7 @@ from sonolube.vocabulary import quantity
 if TYPE_CHECKING:
     import xarray as xr
 
-_SAME_AXES = 0.01  # of the largest value of an axis, which nobody sees along it
+_SAMEAXES = 0.01  # of the largest value of an axis, which nobody sees along it
 _SAME_PANELS = 0.005  # of the friction reduction, which nobody sees in contours of 5 %
 
 
@@ -67,7 +67,7 @@ def same_panels(computed: "xr.Dataset") -> bool:
         return False
     if panel in computed[up].dims:
         heights = computed[up]
-        if float(np.abs(heights - heights.isel({panel: 0})).max()) > _SAME_AXES * float(heights.max()):
+        if float(np.abs(heights - heights.isel({panel: 0})).max()) > _SAMEAXES * float(heights.max()):
             return False
     reduction = computed["friction_reduction"]
     missing = reduction.isnull()
@@ -93,7 +93,7 @@ _STEP = 5  # percent between two contour levels
 _MEASURED_LABEL = "measured, reduction in %"
 _MOVED_LABEL = "measured, moved to the panel by the model"
 _SATURATION_LABEL = "above it doubling the power gains less than 5 %"
-_AXES: dict[str, tuple[float, Axis]] = {
+AXES: dict[str, tuple[float, Axis]] = {
     "sliding_speed": (1e3, Axis("Sliding speed", "mm/s")),
     "power_to_supply": (1.0, Axis("Power to supply", "W")),
     "charging_power": (1.0, Axis("Power of the amplifier", "W")),
@@ -122,15 +122,15 @@ def map_chart(computed: "xr.Dataset", *, measured: "xr.Dataset | None" = None) -
     map_page, measured_map_chart
     """
     x_name, y_name, panel = map_layout(computed)
-    parts, panel = _panels(computed, panel)
+    parts, panel = panels_of(computed, panel)
     levels = _levels(computed, measured)
     columns = _columns(len(parts))
     text = panels_text(computed)
     panels = []
     for place, part in enumerate(parts):
         drawn = (*_contours(part, x_name, y_name, levels), *_runs(measured, x_name, y_name, place))
-        title = text[:1].upper() + text[1:] if panel is None else _panel_title(part, panel)
-        panels.append(Panel(x=_AXES[x_name][1], y=_AXES[y_name][1], parts=drawn, title=title))
+        title = text[:1].upper() + text[1:] if panel is None else panel_title(part, panel)
+        panels.append(Panel(x=AXES[x_name][1], y=AXES[y_name][1], parts=drawn, title=title))
     rows = -(-len(parts) // columns)
     size = (4.8, 3.6) if len(parts) == 1 else (2.35 * columns + 0.9, 2.3 * rows + 0.5)
     shares = len(parts) > 1
@@ -156,10 +156,10 @@ def measured_map_chart(interpolated: "xr.Dataset", runs: "xr.Dataset") -> Chart:
     map_chart, gaussian_process_map
     """
     x_name, y_name, _ = map_layout(interpolated)
-    x, y, reduction = _surface(interpolated, x_name, y_name)
-    _, _, uncertainty = _surface(interpolated, x_name, y_name, of="friction_reduction_uncertainty")
+    x, y, reduction = surface(interpolated, x_name, y_name)
+    _, _, uncertainty = surface(interpolated, x_name, y_name, of="friction_reduction_uncertainty")
     levels = _levels(interpolated, runs)
-    across, up = (_AXES[name][0] * runs[name].values for name in (x_name, y_name))
+    across, up = (AXES[name][0] * runs[name].values for name in (x_name, y_name))
     points = Points(x=across, y=up, colour="0", is_hollow=True, label="measured runs")
     steps = np.linspace(0.0, max(100 * float(np.nanmax(uncertainty)), 1e-3), 9)
     fields = (
@@ -168,7 +168,7 @@ def measured_map_chart(interpolated: "xr.Dataset", runs: "xr.Dataset") -> Chart:
         ),
         Field(x=x, y=y, values=100 * uncertainty, label="Standard uncertainty", unit="%", levels=steps, scale="grey"),
     )
-    panels = tuple(Panel(x=_AXES[x_name][1], y=_AXES[y_name][1], parts=(field, points)) for field in fields)
+    panels = tuple(Panel(x=AXES[x_name][1], y=AXES[y_name][1], parts=(field, points)) for field in fields)
     return Chart(panels=panels, size=(8.0, 3.6), columns=2, legend="top", shares_y=True)
 
 
@@ -199,12 +199,12 @@ def map_page(computed: "xr.Dataset") -> str:
     except ImportError:
         raise missing_package("web", remedy="take PNG or PDF") from None
     x_name, y_name, panel = map_layout(computed)
-    parts, panel = _panels(computed, panel)
+    parts, panel = panels_of(computed, panel)
     columns = _columns(len(parts))
-    titles = None if panel is None else [_panel_title(part, panel) for part in parts]
+    titles = None if panel is None else [panel_title(part, panel) for part in parts]
     page = make_subplots(rows=-(-len(parts) // columns), cols=columns, subplot_titles=titles)
     for index, part in enumerate(parts):
-        x, y, reduction = _surface(part, x_name, y_name)
+        x, y, reduction = surface(part, x_name, y_name)
         contour = Contour(
             x=x,
             y=y,
@@ -218,15 +218,15 @@ def map_page(computed: "xr.Dataset") -> str:
         )
         row, column = index // columns + 1, index % columns + 1
         page.add_trace(contour, row=row, col=column)
-        page.update_xaxes(title_text=_AXES[x_name][1].text, row=row, col=column)
-        page.update_yaxes(title_text=_AXES[y_name][1].text, row=row, col=column)
+        page.update_xaxes(title_text=AXES[x_name][1].text, row=row, col=column)
+        page.update_yaxes(title_text=AXES[y_name][1].text, row=row, col=column)
     page.update_layout(title=", ".join(filter(None, (computed.attrs["title"], panels_text(computed)))))
     return str(page.to_html(include_plotlyjs=True, full_html=True))
 
 
 def _contours(part: "xr.Dataset", x_name: str, y_name: str, levels: Floats) -> tuple[Part, ...]:
     """Contours of one panel, and the saturation power where the map has it."""
-    x, y, reduction = _surface(part, x_name, y_name)
+    x, y, reduction = surface(part, x_name, y_name)
     percent = 100 * reduction
     varies = bool(np.isfinite(percent).any()) and np.nanmax(percent) - np.nanmin(percent) > 1
     lines = levels[2:-1:2] if varies else None
@@ -251,8 +251,8 @@ def _runs(measured: "xr.Dataset | None", x_name: str, y_name: str, place: int) -
         runs = measured.isel(run=chosen)
         percent = 100 * runs["shown_friction_reduction"].values
         points = Points(
-            x=_AXES[x_name][0] * runs[x_name].values,
-            y=_AXES[y_name][0] * runs[y_name].values,
+            x=AXES[x_name][0] * runs[x_name].values,
+            y=AXES[y_name][0] * runs[y_name].values,
             shades=percent,
             texts=tuple(f"{each:.0f}" for each in percent),
             label=label,
@@ -277,7 +277,7 @@ def _levels(computed: "xr.Dataset", measured: "xr.Dataset | None") -> Floats:
     return np.arange(0.0, 20 * max(np.ceil(5 * min(largest, 1.0)), 1) + 1, _STEP)
 
 
-def _panels(computed: "xr.Dataset", panel: str | None) -> "tuple[list[xr.Dataset], str | None]":
+def panels_of(computed: "xr.Dataset", panel: str | None) -> "tuple[list[xr.Dataset], str | None]":
     """Parts of a map, one for each value of the quantity of its panels, and that; one part where all are the same."""
     if panel is None:
         return [computed], None
@@ -286,23 +286,23 @@ def _panels(computed: "xr.Dataset", panel: str | None) -> "tuple[list[xr.Dataset
     return [computed.isel({panel: index}) for index in range(computed.sizes[panel])], panel
 
 
-def _surface(
+def surface(
     part: "xr.Dataset", x_name: str, y_name: str, *, of: str = "friction_reduction"
 ) -> tuple[Floats, Floats, Floats]:
     """Coordinates in the units of their axes, and friction reduction over y and x."""
     x, y = part[x_name], part[y_name]
     order = np.argsort(y.values, kind="stable")  # a power may fall where the voltage rises past a resonance
     reduction = part[of].transpose(y.dims[0], x.dims[0]).values[order]
-    return x.values * _AXES[x_name][0], y.values[order] * _AXES[y_name][0], reduction
+    return x.values * AXES[x_name][0], y.values[order] * AXES[y_name][0], reduction
 
 
-def _panel_title(part: "xr.Dataset", panel: str) -> str:
+def panel_title(part: "xr.Dataset", panel: str) -> str:
     """Voltage and power, amplitude, or load and stress, of a panel."""
     if panel == AMPLITUDE.name:
         return f"amplitude {format_si(float(part[panel]), AMPLITUDE.unit)}"
     if panel == "voltage_peak_to_peak":
         volts, watts = float(part[panel]), part[map_power(part)].values
         low, high = (format_si(float(end), "W") for end in (watts.min(), watts.max()))
-        is_one = float(np.ptp(watts)) <= _SAME_AXES * float(watts.max())
+        is_one = float(np.ptp(watts)) <= _SAMEAXES * float(watts.max())
         return f"{format_si(volts, 'V')}, {high if is_one else f'{low} to {high}'}"
     return f"{format_si(float(part[panel]), 'N')}, {format_si(float(part['nominal_pressure']), 'Pa')}"

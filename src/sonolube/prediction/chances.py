@@ -19,8 +19,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _DRAWS: Final = 1000  # each of which has a distribution in closed form
+_NEAR_A_TENTH: Final = 0.015
 _AT_ONCE: Final = 512  # conditions, to bound memory
 _AMPLITUDES: Final = 257  # among which the least one is sought
+_ROWS, _COLUMNS = 33, 17  # of a grid over amplitude and frequency or speed
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -74,6 +76,39 @@ class ReductionChances:
                     vibration_amplitude=a.flat[part], frequency=f.flat[part], sliding_speed=v.flat[part]
                 )
                 found.flat[part] = self.prediction.chances(at.conditions, friction_ratio=1 - friction_reduction)
+        return found
+
+    def over_grid(self, friction_reduction: float, vibration_amplitude: Floats, other: Floats, *, name: str) -> Floats:
+        """Probabilities at very many points, between those of a grid over amplitude and frequency or sliding speed.
+
+        Parameters
+        ----------
+        friction_reduction : float
+            Target, between 0 and 1. []
+        vibration_amplitude : ndarray
+            Zero to peak; NaN gives NaN. [m]
+        other : ndarray, shape of `vibration_amplitude`
+            Frequencies or sliding speeds. [Hz] or [m/s]
+        name : {"frequency", "sliding_speed"}
+
+        Returns
+        -------
+        ndarray, shape of `vibration_amplitude`
+            To 0.01. []
+        """
+        moving = np.isfinite(vibration_amplitude) & (vibration_amplitude > 0)
+        found = np.where(np.isnan(vibration_amplitude), np.nan, 0.0)
+        if not np.any(moving):
+            return found
+        logs, across = np.log(vibration_amplitude[moving]), np.log(other[moving])
+        rows, columns = _nodes(logs, _ROWS), _nodes(across, _COLUMNS)
+        table = self.of(friction_reduction, vibration_amplitude=np.exp(rows)[:, None], **{name: np.exp(columns)})
+        values = np.stack([np.interp(logs, rows, column) for column in table.T])
+        steps = np.interp(across, columns, np.arange(columns.size))
+        below = np.minimum(steps.astype(int), max(columns.size - 2, 0))
+        points = np.arange(logs.size)
+        low, high = values[below, points], values[np.minimum(below + 1, columns.size - 1), points]
+        found[moving] = low + (steps - below) * (high - low)
         return found
 
     def least_amplitude(
@@ -131,11 +166,18 @@ def reduction_chances(rig: Rig, *, runs: "xr.Dataset | None" = None) -> Reductio
     return ReductionChances(inputs=inputs, prediction=found, runs=0 if tested is None else tested.friction_ratio.size)
 
 
+def _nodes(logs: Floats, count: int) -> Floats:
+    """Even nodes between the ends of some logarithms; one where all are the same."""
+    low, high = float(np.min(logs)), float(np.max(logs))
+    return np.linspace(low, high, count) if high > low else np.array([low])
+
+
 def odds_text(chance: float) -> str:
-    """Chance in words, in tenths, as "7 chances in 10"."""
-    tenths = int(np.floor(10 * chance + 1e-9))
-    if tenths == 10:
-        return "10 chances in 10"
-    if tenths == 0:
-        return "less than 1 chance in 10"
-    return f"{tenths} {'chance' if tenths == 1 else 'chances'} in 10"
+    """Chance in words: in tenths where it is near one, as "7 chances in 10", else in hundredths."""
+    tenths = round(10 * chance)
+    if abs(chance - tenths / 10) < _NEAR_A_TENTH and 0 < tenths < 10:
+        return f"{tenths} {'chance' if tenths == 1 else 'chances'} in 10"
+    hundredths = round(100 * chance)
+    if hundredths == 0:
+        return "less than 1 chance in 100"
+    return "more than 99 chances in 100" if hundredths == 100 else f"{hundredths} chances in 100"

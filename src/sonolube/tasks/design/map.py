@@ -1,6 +1,7 @@
 """Task `map`: friction reduction of a rig over two quantities, beside measured runs."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Annotated, Any, Literal, Unpack
 
 import numpy as np
@@ -8,22 +9,29 @@ import numpy as np
 from sonolube import design
 from sonolube.checks import Floats
 from sonolube.design import map_chart, map_kinds, map_page, measured_map_chart
+from sonolube.design.map_chances import CHANCE, chance_chart, chance_facts, chance_object, with_chances
 from sonolube.design.maps import default_axes
 from sonolube.design.runs_map import require_mappable, runs_map, runs_on_map
 from sonolube.errors import InvalidInput
 from sonolube.measurement.run_columns import runs_help
 from sonolube.models.friction.models.range_check import ratio_caveats
+from sonolube.prediction.chances import reduction_chances
 from sonolube.report import Drawing, Page
 from sonolube.report.results.design import friction_map as results
 from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, commanded_quantity, operating_caveats
-from sonolube.tasks.answer import Answer, Block, Dataset, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
+from sonolube.tasks.design.chances import CONFIDENCE, TARGET_REDUCTION, target_chance
 from sonolube.tasks.own_tables import MappedRuns, Values, refuse_replaced, runs_of, values_by_key
-from sonolube.tasks.parameters import Backend, File, KeyValues, Parameter, RigFile, RunsSource, Watched, rig_of
+from sonolube.tasks.parameters import Backend, File, KeyValues, Number, Parameter, RigFile, RunsSource, Watched, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import shown, task
 
 _AXIS_KEYS = ("sliding.sliding_speed", "contact.normal_load", VOLTAGE.key, AMPLITUDE.key, "drive.frequency")
 _MEASURED_CAPTION = "Friction reduction between the measured runs alone by a Gaussian process, with its uncertainty."
+_CHANCE_CAPTION = (
+    "Chance that the target reduction is reached, by the distribution of `sonolube predict`: with the errors of the"
+    " model and of what is not known of the rig."
+)
 _FORMS = ("png", "svg", "pdf")  # of figures, where none is given
 _OVER = KeyValues(
     "Other values of an axis, first:last:count or one,two,...: sliding.sliding_speed, contact.normal_load,"
@@ -55,6 +63,8 @@ def map(  # noqa: A001 - the command's name
     over: Annotated[Values | None, _OVER] = None,
     runs: Annotated[RunsSource, _RUNS] = None,
     mapping: MappedRuns = None,
+    target_reduction: Annotated[Number | None, TARGET_REDUCTION] = None,
+    confidence: Annotated[Number | None, CONFIDENCE] = None,
     form: Annotated[
         Sequence[Literal["png", "pdf", "svg", "html"]],
         Parameter("png, pdf, svg or an interactive html; may come again."),
@@ -82,6 +92,11 @@ def map(  # noqa: A001 - the command's name
         require_mappable(measured, kind=chosen, commanded=commanded_quantity(known))
     with stage("mapping"):
         mapped = design.MAPS[chosen](known, **axes, backend=backend)
+    target, wanted = target_chance(target_reduction, confidence)
+    if target is not None:
+        with stage("chances"):
+            chances = reduction_chances(known, runs=measured)
+            mapped = with_chances(mapped, chances, friction_reduction=target)
     left_out: tuple[str, ...] = ()
     if measured is not None:
         measured, left_out = runs_on_map(measured, known, mapped)
@@ -92,6 +107,7 @@ def map(  # noqa: A001 - the command's name
         interpolated=None if measured is None else runs_map(measured, kind=chosen),
         forms=tuple(form) or _FORMS,
         left_out=left_out,
+        confidence=wanted,
     )
 
 
@@ -105,14 +121,18 @@ class MapAnswer(Answer):
     interpolated: "Dataset | None"
     forms: tuple[str, ...]
     left_out: tuple[str, ...] = ()
+    confidence: float | None = None
 
     def blocks(self) -> Sequence[Block]:
-        """Greatest reduction, ridge, and points without a result."""
-        return results.map_blocks(self.rig, self.mapped)
+        """Greatest reduction, ridge, chance of the target, and points without a result."""
+        return [*results.map_blocks(self.rig, self.mapped), *([Rows(self._chances)] if self._chances else [])]
 
     def object(self) -> dict[str, Any]:
         """Greatest reduction with the point where it occurs, and the number of points without a result."""
-        return results.map_object(self.rig, self.mapped)
+        found = results.map_object(self.rig, self.mapped)
+        if CHANCE not in self.mapped:
+            return found
+        return found | chance_object(self.mapped, confidence=self.confidence)
 
     def caveats(self) -> Sequence[str]:
         """Caveats of the rig at its own operating point and of ratios on the map, and runs without a place on it."""
@@ -130,6 +150,12 @@ class MapAnswer(Answer):
             drawings[f"{self._name}-measured"] = Drawing(
                 chart=lambda: measured_map_chart(between, runs), caption=_MEASURED_CAPTION, forms=forms
             )
+        if CHANCE in self.mapped:
+            drawings[f"{self._name}-chance"] = Drawing(
+                chart=lambda: chance_chart(self.mapped, confidence=self.confidence),
+                caption=_CHANCE_CAPTION,
+                forms=forms,
+            )
         return drawings
 
     def files(self) -> "Mapping[str, str | Dataset]":
@@ -144,7 +170,13 @@ class MapAnswer(Answer):
 
     def page(self) -> Page:
         """Page `map.html`."""
-        return results.map_page(self.rig, self.mapped, self.runs, self.interpolated)
+        page = results.map_page(self.rig, self.mapped, self.runs, self.interpolated)
+        return replace(page, facts=[*page.facts, *self._chances])
+
+    @property
+    def _chances(self) -> list[tuple[str, str]]:
+        """Chances of the target, where one is asked for."""
+        return chance_facts(self.mapped, confidence=self.confidence) if CHANCE in self.mapped else []
 
     @property
     def _name(self) -> str:

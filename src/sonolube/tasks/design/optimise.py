@@ -20,10 +20,12 @@ from sonolube.design.optimisation import (
     design_output as figures,
     design_text,
 )
+from sonolube.design.optimisation.confident_optimum import ReachedChance, optimum_with_chance
 from sonolube.design.optimisation.design_output import design_counts, designs_dataset
 from sonolube.design.optimisation.requirements import preload_bolt
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.facts.materials import material
+from sonolube.measurement.run_columns import runs_help
 from sonolube.models.actuator import CatalogueActuator, PreloadBolt, catalogue_actuator, catalogue_names, read_catalogue
 from sonolube.report import Drawing, Page, PageTable
 from sonolube.report.results.design import optimum as results
@@ -34,10 +36,21 @@ from sonolube.rig.driven_rig import driven_rig
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.storage.user_files import input_text
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, Table, answer
+from sonolube.tasks.design.chances import CONFIDENCE
 from sonolube.tasks.design.control import friction_force
 from sonolube.tasks.files import InputFile, file_path
-from sonolube.tasks.own_tables import Values, ends_by_key, refuse_replaced, values_by_key
-from sonolube.tasks.parameters import File, KeyValues, Number, Parameter, Quantity, RestingRig, Watched, rig_of
+from sonolube.tasks.own_tables import MappedRuns, Values, ends_by_key, refuse_replaced, runs_of, values_by_key
+from sonolube.tasks.parameters import (
+    File,
+    KeyValues,
+    Number,
+    Parameter,
+    Quantity,
+    RestingRig,
+    RunsSource,
+    Watched,
+    rig_of,
+)
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 from sonolube.text.units import format_si
@@ -165,19 +178,21 @@ class OptimisationAnswer(Answer):
     rig: Rig
     optimum: Optimum
     electric: DriveElectronics
+    chance: ReachedChance | None = None
 
     def blocks(self) -> Sequence[Block]:
         """Best design, table of all, and actuators that were not used."""
         return [
             operating_point(self._space.rig),
-            Rows(results.facts(self.optimum, self.electric)),
+            Rows([*self._chance, *results.facts(self.optimum, self.electric)]),
             Table(*results.designs_table(self.optimum)),
             *[f"  not used: {reason}" for reason in self.optimum.screening.refused.values()],
         ]
 
     def object(self) -> dict[str, Any]:
         """Best designs and front with the entries that make each, number of designs, amplifier and networks."""
-        return results.optimum_object(self.optimum, self.electric, content=self.rig.content())
+        found = results.optimum_object(self.optimum, self.electric, content=self.rig.content())
+        return found | results.chance_object(self.chance)
 
     def caveats(self) -> Sequence[str]:
         """Values at the end of their range, heat beyond the amplifier's power, and a preload that is not given."""
@@ -239,12 +254,17 @@ class OptimisationAnswer(Answer):
             name="optimise",
             title=f"Least {optimum.minimise} for a friction ratio of {optimum.problem.friction_ratio:.3g}: {rig.title}",
             settings=rig_settings(rig),
-            facts=[*results.facts(optimum, self.electric), *refused],
+            facts=[*self._chance, *results.facts(optimum, self.electric), *refused],
             tables=[
                 PageTable(title="Designs, the best first", heads=tuple(heads), rows=tuple(rows)),
                 count_table("Screened designs by status", "designs", counts, total=total),
             ],
         )
+
+    @property
+    def _chance(self) -> list[tuple[str, str]]:
+        """Chance of the target by the best design, where it is known."""
+        return [] if self.chance is None else [("predicted", self.chance.text)]
 
     @property
     def _space(self) -> Any:
@@ -265,6 +285,11 @@ _OVER = KeyValues(
     "KEY=FIRST:LAST",
 )
 _ACTUATOR = Parameter("own, a name that sonolube actuators lists, or catalogue. May come again.", "NAME")
+_RUNS = File(
+    runs_help("Own measured runs, on which the chance of the target rests beside the published tests. Columns"),
+    "RUNS.csv",
+    option="--runs --measured",
+)
 _CATALOGUE = File("Further actuators, in the format of the built-in list.", "FILE.toml")
 
 
@@ -278,6 +303,9 @@ def optimise(
     target_reduction: Annotated[
         Number | None, Quantity("Reduction of friction in its place, such as 60 %.", "", kind="SHARE")
     ] = None,
+    confidence: Annotated[Number | None, CONFIDENCE] = None,
+    runs: Annotated[RunsSource, _RUNS] = None,
+    mapping: MappedRuns = None,
     over: Annotated[Values | None, _OVER] = None,
     actuator: Annotated[Sequence[str], _ACTUATOR] = (),
     catalogue: Annotated[InputFile | None, _CATALOGUE] = None,
@@ -352,16 +380,23 @@ def optimise(
     source = in_si("source_resistance", source_resistance)
     if source is not None:
         require_positive(source_resistance=source)
+    wanted = in_si("confidence", confidence)
+    if wanted is not None and not 0 < wanted < 1:
+        raise InvalidInput(f"{shown('confidence')} must lie between 0 and 100 %, got {100 * wanted:.4g} %")
+    measured = runs_of(runs, mapping)
     with stage("optimising") as advance:
-        optimum = optimisation.optimise(
+        optimum, chance = optimum_with_chance(
             problem,
+            known,
+            confidence=wanted,
+            runs=measured,
             minimise=minimise,
             second_objective=pareto,
             samples=samples,
             advance=lambda done, total: advance("structures", done, total),
         )
         electric = optimisation.required_electronics(problem, optimum.best, source_resistance=source)
-    return OptimisationAnswer(rig=known, optimum=optimum, electric=electric)
+    return OptimisationAnswer(rig=known, optimum=optimum, electric=electric, chance=chance)
 
 
 def _refuse_unused(

@@ -14,6 +14,7 @@ from sonolube.design.optimisation import (
     Optimum,
     Tolerance,
 )
+from sonolube.design.optimisation.confident_optimum import ReachedChance
 from sonolube.design.optimisation.design_output import design_changes
 from sonolube.design.optimisation.evaluation import LIMITS
 from sonolube.models.actuator import MatchingNetwork
@@ -107,6 +108,20 @@ def optimum_caveats(optimum: Optimum) -> list[str]:
     if best.evaluation.utilisation["tension"][0] == 0:
         caveats.append("no preload is given, so that tension in the stack is not judged: give bolt and preload")
     return caveats
+
+
+def chance_object(chance: ReachedChance | None) -> dict[str, Any]:
+    """Chance of the target by the best design, and its friction ratio with the 80 % interval; empty where unknown."""
+    if chance is None:
+        return {}
+    return {
+        "predicted": {
+            "target_reduction": chance.friction_reduction,
+            "confidence": chance.wanted,
+            "chance": chance.chance,
+            "friction_ratio": {"median": chance.median, "interval_80": [chance.low, chance.high]},
+        }
+    }
 
 
 def optimum_object(optimum: Optimum, electric: DriveElectronics, *, content: Mapping[str, Any]) -> dict[str, Any]:
