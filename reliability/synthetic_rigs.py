@@ -1,7 +1,8 @@
 """Rigs with known friction under vibration, by stick-slip stepped through a period: code of its own.
 
 Truth is drawn from what was learned of the population: memory length, decay length, and a discrepancy of the model that
-is a Gaussian process over the logarithms of amplitude and speed with Student's scale.
+is a Gaussian process over the logarithms of amplitude and speed with Student's scale, as large as what vibration can do
+there, and drawn anew until all ratios lie between 0 and 1.
 """
 
 from dataclasses import dataclass
@@ -15,6 +16,7 @@ _STEPS = 2048  # of a period
 _ELEMENTS = 160  # asperities that open in a period
 _REFERENCE = 1.5e-6  # m, of the learned factor on the decay length
 _AMPLITUDE_ERROR = 0.05
+_TRIES = 1000
 _DEGREES = 4.0  # of freedom of the discrepancy's scale
 
 
@@ -67,6 +69,22 @@ def stepped_stick_slip_ratio(beta: Floats, speed: Floats) -> Floats:
     return np.where(v.ravel() >= 1, 1.0, np.minimum(ratio, 1.0)).reshape(b.shape)
 
 
+def true_ratios(
+    rng: np.random.Generator, mean: Floats, effect: Floats, logs: Floats, *, sigma: float, length: float
+) -> Floats:
+    """Ratios about those of the model, with a discrepancy that is correlated over logarithms of the settings."""
+    distances = np.sum((logs[:, :, None] - logs[:, None, :]) ** 2, axis=0)
+    near = np.exp(-0.5 * distances / np.exp(2 * length)) + 1e-9 * np.eye(mean.size)
+    factor = np.linalg.cholesky(near)
+    for _ in range(_TRIES):
+        scale = np.exp(sigma) * np.sqrt(_DEGREES / rng.chisquare(_DEGREES))
+        side = scale * np.clip((1 - mean) / 0.2, 0.25, 1.0) * effect
+        truth = mean + side * (factor @ rng.standard_normal(mean.size))
+        if np.all((truth >= 0) & (truth <= 1)):
+            return np.asarray(truth)
+    return mean
+
+
 def synthetic_rig(
     rng: np.random.Generator, hyperparameters: Floats, *, runs: int, with_discrepancy: bool = True, noise: float = 0.05
 ) -> SyntheticRig:
@@ -79,12 +97,10 @@ def synthetic_rig(
     memory = np.exp(mu + np.exp(tau) * rng.standard_normal())
     decay = _REFERENCE * np.exp(kappa + np.exp(tau_l) * rng.standard_normal())
     true_a = a * np.exp(_AMPLITUDE_ERROR * rng.standard_normal())
-    mean = stepped_stick_slip_ratio(true_a / decay, v * decay / (2 * np.pi * f * true_a * memory))
-    scale = np.exp(sigma) * np.sqrt(_DEGREES / rng.chisquare(_DEGREES)) * float(with_discrepancy)
-    side = scale * np.clip((1 - mean) / 0.2, 0.25, 1.0)
-    distances = np.sum((shifts[:, :, None] - shifts[:, None, :]) ** 2, axis=0)
-    covariance = side[:, None] * side * np.exp(-0.5 * distances / np.exp(2 * length))
-    truth = np.maximum(mean + rng.multivariate_normal(np.zeros(a.size), covariance + 1e-12 * np.eye(a.size)), 0.0)
+    slow = v * decay / (2 * np.pi * f * true_a * memory)
+    mean = stepped_stick_slip_ratio(true_a / decay, slow)
+    effect = np.minimum(true_a / (0.2 * decay), 1.0) / (1 + slow**2) * float(with_discrepancy)
+    truth = true_ratios(rng, mean, effect, np.log(np.stack([a, v])), sigma=sigma, length=length)
     return SyntheticRig(
         vibration_amplitude=a,
         sliding_speed=v,

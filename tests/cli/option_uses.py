@@ -418,12 +418,18 @@ MODES = {
             "--over": "contact.normal_load=3N",
             "--runs": RUNS,
             "--mapping": "FOLDER/reduced.toml",
+            "--target-reduction": "60%",
             "--form": "svg",
             "--load": "2N",
             "--amplitude": "per-volt",
             "--set": "contact.roughness.rms_height=1um",
             "--backend": "gpu",
         },
+    ),
+    "map of chances": Mode(
+        "map",
+        (str(RIGS / "power_map.toml"), *MAP, "--target-reduction", "60%"),
+        {"--confidence": "40%", "--runs": RUNS},
     ),
     "map of a kind": Mode(
         "map",
@@ -455,6 +461,9 @@ MODES = {
         {
             "--target-friction": "0.2",
             "--target-reduction": "50%",
+            "--confidence": "50%",
+            "--runs": RUNS,
+            "--mapping": "FOLDER/reduced.toml",
             "--over": "structure.tip_mass=80g:120g",
             "--actuator": "catalogue",
             "--catalogue": "FOLDER/catalogue.toml",

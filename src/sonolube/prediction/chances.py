@@ -180,4 +180,6 @@ def odds_text(chance: float) -> str:
     hundredths = round(100 * chance)
     if hundredths == 0:
         return "less than 1 chance in 100"
-    return "more than 99 chances in 100" if hundredths == 100 else f"{hundredths} chances in 100"
+    if hundredths == 100:
+        return "more than 99 chances in 100"
+    return f"{hundredths} {'chance' if hundredths == 1 else 'chances'} in 100"

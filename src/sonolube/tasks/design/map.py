@@ -32,6 +32,7 @@ _CHANCE_CAPTION = (
     "Chance that the target reduction is reached, by the distribution of `sonolube predict`: with the errors of the"
     " model and of what is not known of the rig."
 )
+_NO_AMPLITUDE = "the runs state neither amplitude nor voltage, so that the chances rest on published tests alone"
 _FORMS = ("png", "svg", "pdf")  # of figures, where none is given
 _OVER = KeyValues(
     "Other values of an axis, first:last:count or one,two,...: sliding.sliding_speed, contact.normal_load,"
@@ -95,11 +96,13 @@ def map(  # noqa: A001 - the command's name
     target, wanted = target_chance(target_reduction, confidence)
     if target is not None:
         with stage("chances"):
-            chances = reduction_chances(known, runs=measured)
+            chances = reduction_chances(known, runs=_with_amplitude(measured))
             mapped = with_chances(mapped, chances, friction_reduction=target)
     left_out: tuple[str, ...] = ()
     if measured is not None:
+        unused = target is not None and _with_amplitude(measured) is None
         measured, left_out = runs_on_map(measured, known, mapped)
+        left_out = (*left_out, *((_NO_AMPLITUDE,) if unused else ()))
     return MapAnswer(
         rig=known,
         mapped=mapped,
@@ -182,6 +185,11 @@ class MapAnswer(Answer):
     def _name(self) -> str:
         """Name of the files, without ending."""
         return f"{self.rig.name}-{self.mapped.attrs['map']}"
+
+
+def _with_amplitude(runs: "Dataset | None") -> "Dataset | None":
+    """Runs that state an amplitude or a voltage, on which a prediction may rest; else None."""
+    return None if runs is None or not {"vibration_amplitude", VOLTAGE.name} & {*runs.variables} else runs
 
 
 def _kind(rig: Rig, kind: str | None) -> str:
