@@ -201,12 +201,14 @@ def runs_on_map(runs: "xr.Dataset", rig: Rig, computed: "xr.Dataset") -> tuple["
     (`is_moved`).
     """
     across, up, _ = map_layout(computed)
-    if MAP_LAYOUTS[computed.attrs["map"]][1] == "power_to_supply":
-        runs = runs.assign({up: ("run", setting(runs, _POWER, _power_of_voltage(runs, rig, computed[up])))})
+    is_power = MAP_LAYOUTS[computed.attrs["map"]][1] == "power_to_supply"
+    if is_power:
+        runs = runs.assign({_POWER: ("run", setting(runs, _POWER, _power_of_voltage(runs, rig, computed[up])))})
+        runs = runs.assign({up: runs[_POWER]})
     if up == "nominal_pressure":
         pressure = setting(runs, "normal_load", rig.normal_load) / rig.contact.nominal_area
         runs = runs.assign({up: ("run", setting(runs, up, pressure))})
-    placed, skipped = with_columns(runs, across, up)
+    placed, skipped = with_columns(runs, across, _POWER if is_power else up)
     shown, beyond = _on_panels(placed, rig, computed)
     return shown, (*run_caveats(runs), *skipped, *beyond)
 

@@ -59,7 +59,7 @@ def test_every_point_of_an_efficiency_characteristic_has_the_efficiency_of_the_l
     line = EfficiencyLine(slope=0.0, intercept=2e-9)
     characteristic = efficiency_characteristic(TRIBOMETER, line, voltage_maximum=20.0, points=5)
     volts = characteristic.level[1:]
-    power = DriveVoltage(drive=TRIBOMETER.drive).amplifier_power(
+    power = DriveVoltage(drive=TRIBOMETER.drive).charging_power(
         capacitance=360e-9, voltage_peak_to_peak=volts, voltage_offset=0.5 * volts
     )
     found = efficiency_coefficient(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 from sonolube.models.wear import WearMechanismAssessment
 from sonolube.report.results.record_object import picked
 from sonolube.rig import LubricationPoint, Rig
-from sonolube.text.units import format_si
+from sonolube.text.units import format_quantity, format_si
 from sonolube.validation.published_tests import NORMAL_VIBRATION_SETS, FrictionTest, friction_tests
 from sonolube.vocabulary import si
 
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from sonolube.prediction.applicability import FrictionInterval
     from sonolube.rig import ResolvedRig
     from sonolube.validation.assessment import ErrorStatistics
+    from sonolube.validation.published_wear_tests import WearErrors, WearTest
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -106,6 +107,77 @@ def measured_on(rig: Rig, *, vibration_amplitude: float) -> tuple[FrictionTest, 
 def _near(own: Sequence[float], printed: Sequence[float]) -> bool:
     """Whether conditions are those of a test as far as print rounds them."""
     return all(abs(one - other) <= _SAME * abs(other) for one, other in zip(own, printed, strict=True))
+
+
+_WORN_AREA: Final = 0.13  # relative difference of nominal areas, which grew by a quarter while the tips of D wore
+
+
+def worn_on(rig: Rig, *, vibration_amplitude: float) -> "tuple[WearTest, ...]":
+    """Published wear tests under the contact, load, speed, friction, frequency and amplitude of a rig, but for wear."""
+    from sonolube.validation.published_wear_tests import wear_tests
+
+    if rig.drive is None or not rig.direction.is_normal:
+        return ()
+    own = (*_OF_BOTH(rig), rig.drive.frequency, vibration_amplitude)
+    found = []
+    for test in wear_tests():
+        printed = (*_OF_BOTH(test.conditions), *_OF_TEST(test.conditions))
+        grown = abs(own[0] - printed[0]) / printed[0]  # the nominal area
+        if grown <= _WORN_AREA and _near(own[1:], printed[1:]):
+            found.append(test)
+    return tuple(found)
+
+
+def wear_error_rows(errors: "WearErrors") -> list[tuple[str, str]]:
+    """Error of a wear model on the published tests, in words."""
+    outside = f"; {', '.join(errors.out_of_range)} outside its range" if errors.out_of_range else ""
+    text = (
+        f"+-{errors.ratio_rms:.2g} in the ratio on {errors.ratio_count} published tests, a factor of"
+        f" {errors.rate_factor:.3g} in the rate on {errors.rate_count} measured rates,"
+        f" {errors.largest_factor:.3g} at most ({errors.largest_label}){outside}"
+    )
+    return [("error of the model", text)]
+
+
+def wear_error_object(errors: "WearErrors") -> dict[str, Any]:
+    """Error of a wear model on the published tests, for JSON."""
+    return {
+        "model_error": {
+            "wear_rate_ratio": {"rms": errors.ratio_rms, "tests": errors.ratio_count},
+            "wear_rate": {
+                "factor": errors.rate_factor,
+                "rates": errors.rate_count,
+                "largest_factor": errors.largest_factor,
+                "largest_test": errors.largest_label,
+            },
+            "outside_model_range": list(errors.out_of_range),
+        }
+    }
+
+
+def worn_text(test: "WearTest") -> str:
+    """Measured wear of a published test, and where it was published."""
+    rates = (
+        (test.intrinsic_wear_rate, "without vibration"),
+        (test.reduced_wear_rate, "with it"),
+        (test.overall_wear_rate, "of a test with the vibration off and on"),
+    )
+    parts = [f"{format_quantity(rate, 'wear_rate')} {state}" for rate, state in rates if rate is not None]
+    if test.wear_rate_ratio is not None:
+        parts.append(f"ratio {test.wear_rate_ratio:.3g}, a reduction of {100 * (1 - test.wear_rate_ratio):.3g} %")
+    return f"{'; '.join(parts)}: {test.source}"
+
+
+def worn_object(test: "WearTest") -> dict[str, Any]:
+    """Test, source and measured wear, for JSON."""
+    quantities = {
+        "intrinsic_wear_rate": test.intrinsic_wear_rate,
+        "reduced_wear_rate": test.reduced_wear_rate,
+        "wear_rate": test.overall_wear_rate,
+        "wear_rate_ratio": test.wear_rate_ratio,
+    }
+    known = si({name: value for name, value in quantities.items() if value is not None})
+    return {"test": test.label, "source": test.source, **known}
 
 
 _QUANTITIES: Final = ("vibration_amplitude", "sliding_speed", "nominal_pressure", "asperity_load_fraction")

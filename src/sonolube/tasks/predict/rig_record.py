@@ -14,7 +14,17 @@ from sonolube.models.friction import FRICTION_MODELS, FrictionModel
 from sonolube.models.thermal.flash import FLASH_MODELS
 from sonolube.prediction.evidence import large_amplitude_caveats
 from sonolube.report import Drawing
-from sonolube.report.results.rig_point import beyond_the_model, measured_object, measured_on, measured_text
+from sonolube.report.results.rig_point import (
+    beyond_the_model,
+    measured_object,
+    measured_on,
+    measured_text,
+    wear_error_object,
+    wear_error_rows,
+    worn_object,
+    worn_on,
+    worn_text,
+)
 from sonolube.rig import Rig, contact_point, friction_point, temperature_point, thermal_solid, wear_point
 from sonolube.rig.datasets import LabelledArrays, result_quantities, result_texts
 from sonolube.rig.figures import simulation_chart, temperature_chart
@@ -210,8 +220,22 @@ def wear(rig: RigFile) -> RigRecord:
     >>> round(float(answer["wear_reduction"]), 2)
     0.47
     """
+    from sonolube.validation.published_wear_tests import wear_model_errors
+
     known = rig_of(rig)
-    return RigRecord(rig=known, result=wear_point(known))
+    result = wear_point(known)
+    worn = worn_on(known, vibration_amplitude=result.vibration_amplitude)
+    errors = wear_model_errors(result.wear_model) if result.reason is None else None  # all tests are of its range
+    measured = {"measured": [worn_object(test) for test in worn]} if worn else {}
+    return RigRecord(
+        rig=known,
+        result=result,
+        rows=[
+            *((f"measured {test.label}", worn_text(test)) for test in worn),
+            *([] if errors is None else wear_error_rows(errors)),
+        ],
+        entries=measured | ({} if errors is None else wear_error_object(errors)),
+    )
 
 
 @task
