@@ -13,7 +13,7 @@ from sonolube.models.actuator import PreloadBolt
 from sonolube.text.units import to_si
 
 OBJECTIVES = ("power", "heat", "voltage")
-"""Objectives that can be minimised: amplifier power (D 1.9), heat in the actuator, peak-to-peak drive voltage."""
+"""Objectives that can be minimised: power to supply, heat in the actuator, peak-to-peak drive voltage."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

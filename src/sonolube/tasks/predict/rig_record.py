@@ -225,17 +225,13 @@ def wear(rig: RigFile) -> RigRecord:
     known = rig_of(rig)
     result = wear_point(known)
     worn = worn_on(known, vibration_amplitude=result.vibration_amplitude)
-    errors = wear_model_errors(result.wear_model) if result.reason is None else None  # all tests are of its range
-    measured = {"measured": [worn_object(test) for test in worn]} if worn else {}
-    return RigRecord(
-        rig=known,
-        result=result,
-        rows=[
-            *((f"measured {test.label}", worn_text(test)) for test in worn),
-            *([] if errors is None else wear_error_rows(errors)),
-        ],
-        entries=measured | ({} if errors is None else wear_error_object(errors)),
-    )
+    rows = [(f"measured {test.label}", worn_text(test)) for test in worn]
+    entries: dict[str, Any] = {"measured": [worn_object(test) for test in worn]} if worn else {}
+    if result.reason is None:
+        errors = wear_model_errors(result.wear_model)
+        rows += wear_error_rows(errors)
+        entries |= wear_error_object(errors)
+    return RigRecord(rig=known, result=result, rows=rows, entries=entries)
 
 
 @task
