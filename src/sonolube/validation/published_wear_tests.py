@@ -69,15 +69,15 @@ class WearErrors:
     Parameters
     ----------
     ratio_rms : float
-        Root mean square error of the wear rate ratio over the tests inside the range of the model. []
+        Root mean square error of the wear rate ratio over the tests inside the range of the model.
     ratio_count : int
         Number of these tests.
     rate_factor : float
-        Factor between computed and measured wear rates, the exponential of the root mean square of ln of it. []
+        Factor between computed and measured wear rates, the exponential of the root mean square of ln of it.
     rate_count : int
         Number of measured rates.
     largest_factor : float
-        Largest of these factors, either way. []
+        Largest of these factors, either way.
     largest_label : str
         Test that it is of.
     out_of_range : tuple of str

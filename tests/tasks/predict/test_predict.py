@@ -55,4 +55,5 @@ def test_materials_are_refused_by_name(tribometer: Path) -> None:
 def test_the_operating_point_is_stated_with_its_spread_and_power(tribometer: Path) -> None:
     stated = {each["name"]: each["text"] for each in sl.predict(tribometer, draws=200).object()["operating_point"]}
     assert stated["vibration_amplitude"].startswith("2.5 um within ")  # at 28 V, where it was measured
-    assert stated["actuator_power"].endswith(" W")
+    assert stated["power_to_supply"] == "43.9 W"
+    assert stated["charging_power"] == "6.21 W"
