@@ -33,8 +33,9 @@ def _level_rows(study: "xr.Dataset") -> Named:
     lost = study[quantity.name].values[study["contact_loss_fraction"].values > 0]
     yield "contact is lost", f"from {format_si(float(lost.min()), quantity.unit)}" if lost.size else "nowhere"
     highest = extreme_point(study, outcome="power_to_supply", highest=True) if "power_to_supply" in study else None
-    if highest is not None:
-        yield "power to supply", f"up to {_supplied(highest)}"
+    power = None if highest is None else _power(highest)
+    if highest is not None and power is not None:
+        yield "power to supply", f"{power.text} at {_text(highest, quantity.name)}, the highest"
 
 
 def _speed_rows(study: "xr.Dataset") -> Named:
@@ -59,7 +60,9 @@ def _power_rows(study: "xr.Dataset") -> Named:
     if not study["power_to_supply"].isnull().all():
         least = study.isel(frequency=extreme_place(study, outcome="power_to_supply") or 0)
         at = f"{_text(least, 'frequency', digits=4)} and {_text(least, 'voltage_peak_to_peak')}"
-        yield "least power to supply", f"{_supplied(least)} at {at} for friction ratio {_text(least, 'friction_ratio')}"
+        power = _power(least)
+        text = "" if power is None else power.text
+        yield "least power to supply", f"{text} at {at} for friction ratio {_text(least, 'friction_ratio')}"
 
 
 def _waveform_rows(study: "xr.Dataset") -> Named:
@@ -79,9 +82,9 @@ def _load_rows(study: "xr.Dataset") -> Named:
         yield "arm's frequency", f"{format_si(float(arm.min()), 'Hz')} to {format_si(float(arm.max()), 'Hz')}"
 
 
-def _energy_rows(study: "xr.Dataset") -> Named:
-    """Comparison of the powers of the study, at its point of least friction."""
-    best = extreme_point(study, outcome="friction_ratio")
+def _energy_rows(study: "xr.Dataset", of: str) -> Named:
+    """Comparison of the powers of the study, at its point of least friction, or least power for one friction."""
+    best = extreme_point(study, outcome="power_to_supply" if of == "power" else "friction_ratio")
     balance = None if best is None else power_balance(best)
     if balance is not None:
         yield "energy", balance
@@ -126,7 +129,7 @@ _ROWS: "dict[str, Callable[[xr.Dataset], Named]]" = {
 
 def rows(study: "xr.Dataset", of: str) -> list[tuple[str, str]]:
     """Main results of a study over a quantity such as "voltage", and how its powers compare."""
-    return [*_ROWS[of](study), *_energy_rows(study)]
+    return [*_ROWS[of](study), *_energy_rows(study, of)]
 
 
 def best_objects(study: "xr.Dataset") -> list[dict[str, Any]]:
