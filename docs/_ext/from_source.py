@@ -54,7 +54,7 @@ from sonolube.prediction import Calibration, calibrations
 from sonolube.prediction.calibration import plane_calibration
 from sonolube.prediction.figures import blind_caption, plane_caption
 from sonolube.prediction.hierarchy import PROBABILITIES, central_interval
-from sonolube.prediction.within_plane import COULOMB, PlaneConditions, plane_rigs
+from sonolube.prediction.within_plane import PlaneConditions, coulomb_ratio, plane_rigs
 from sonolube.rig import Rig, available_sources, read_rig, rig_schema
 from sonolube.rig.file.toml_file import tables_of
 from sonolube.text.units import format_si, unit_description
@@ -267,7 +267,8 @@ def _calibration_cells(one: Calibration) -> list[str]:
         for each in PROBABILITIES
     ]
     scores = [f"{one.p_value(0.8):.2f}", f"{one.crps:.3f}", f"{one.interval_score:.2f}", f"{one.median_width:.2f}"]
-    gain, low, high = calibrations()[0].gain_over(one)
+    rigs = {each.rig for each in one.predictions}
+    gain, low, high = calibrations()[0].of_rigs(lambda rig: rig in rigs).gain_over(one)
     fall = "" if one is calibrations()[0] else f"{gain:.3f} ({low:.3f} to {high:.3f})"
     return [one.name, *coverages, *scores, fall]
 
@@ -282,16 +283,19 @@ def blind_headline() -> str:
 
 
 def blind_plane() -> str:
-    """Each published point within the plane with Coulomb's law and the prediction by the other points."""
+    """Each published point within the plane with the rigid law and the prediction by the points on other rigs."""
     rows = []
-    for rig, one in zip(plane_rigs(), plane_calibration().predictions, strict=True):
+    points = [(rig, place) for rig in plane_rigs() for place in range(rig.friction_ratio.size)]
+    for (rig, place), one in zip(points, plane_calibration().predictions, strict=True):
         ends = [central_interval(one.draws, probability) for probability in PROBABILITIES]
-        assert isinstance(rig.at.conditions, PlaneConditions)
-        zeta, law = rig.at.conditions.velocity_ratio[0], COULOMB.ratio(0.0, rig.at.conditions)[0]
-        numbers = [f"{zeta:.2g}", f"{one.friction_ratio:.2f}", f"{law:.2f}", f"{np.median(one.draws):.2f}"]
+        at = rig.at.conditions
+        assert isinstance(at, PlaneConditions)
+        zeta = float(at.velocity_ratio[place])
+        rigid = float(coulomb_ratio(at.direction, velocity_ratio=zeta))
+        numbers = [f"{zeta:.2g}", f"{one.friction_ratio:.2f}", f"{rigid:.2g}", f"{np.median(one.draws):.2f}"]
         rows.append([rig.name, *numbers, *(f"{low:.2f} to {high:.2f}" for low, high in ends)])
     intervals = [f"{100 * each:.0f} %" for each in PROBABILITIES]
-    return _grid(["Point", "v_r/(omega a)", "Measured", "Coulomb's law", "Median", *intervals], rows)
+    return _grid(["Point", "v_r/(omega a)", "Measured", "Rigid contact", "Median", *intervals], rows)
 
 
 def blind_plane_headline() -> str:

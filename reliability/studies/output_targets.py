@@ -53,6 +53,8 @@ ARGUMENTS = {  # of every command that writes: the least that it takes, in.dat b
     "fit": (INPUT,),
     "identify rig": (INPUT,),
     "identify decay-length": (INPUT,),
+    "evidence plot": (INPUT,),
+    "evidence learn": (INPUT,),
     "literature": (INPUT,),
     "reproduce": (),
     "example": ("all",),

@@ -3,6 +3,7 @@ from .prediction.live_prediction import LivePrediction as LivePrediction
 from .rig.file.reader import read_rig as read_rig
 from .rig.record import Rig as Rig
 from .tasks import (
+    evidence as evidence,
     export as export,
     horn as horn,
     identify as identify,

@@ -11,6 +11,8 @@ from tests.mode_files import write_universal_file
 from reliability import virtual_contact
 from sonolube.laboratory import Block, Channel
 from sonolube.laboratory.records import new_run
+from sonolube.prediction import learned
+from sonolube.prediction.evidence_posterior import EvidencePosterior, LearnedSource
 
 ROOT = Path(__file__).parents[2]
 RIGS = ROOT / "examples" / "rigs"
@@ -23,6 +25,7 @@ VIBRATED = LOADED | AMPLITUDE
 SIZES = ("--set", "length=20mm", "--set", "width=10mm", "--set", "thickness=5mm")
 BAR = ("--set", "length=10mm", "--set", "width=4mm", "--set", "thickness=20mm")
 RUNS = str(ROOT / "examples" / "efficiency-runs.csv")
+OWN_TESTS = str(ROOT / "examples" / "evidence" / "own_tests.toml")
 OWN_RUNS = str(ROOT / "examples" / "tribometer-runs.csv")
 SWITCHES = str(ROOT / "examples" / "decay-length-run.csv")
 OVER = ("--over", "sliding.sliding_speed=20mm/s,50mm/s")
@@ -105,6 +108,7 @@ MODES = {
             **{
                 "--disc": "aluminium_2024",
                 "--seed": "1",
+                "--evidence": "FOLDER/posterior.json",
                 "--draws": "500",
                 "--mapping": "FOLDER/halved.toml",
                 **VIBRATED,
@@ -831,6 +835,9 @@ MODES = {
         "lab check", (str(ROOT / "examples" / "lab" / "devices.toml"),), {"--protocol": "map_test"}, ("--connect",)
     ),
     "mapping": Mode("mapping", (OWN_RUNS,), {"--column": "friction_force [N]=-"}),
+    "evidence list": Mode("evidence list", ()),
+    "evidence check": Mode("evidence check", (OWN_TESTS,)),
+    "evidence plot": Mode("evidence plot", (OWN_TESTS,)),
     "literature": Mode("literature", (RIG,), VIBRATED | {"--table": "FOLDER/studies.csv"}),
     "literature with a table": Mode(
         "literature", ("--table", "FOLDER/studies.csv"), {"--mapping": "FOLDER/reduced.toml"}
@@ -839,11 +846,20 @@ MODES = {
 }
 
 
+def _write_posterior(path: Path) -> None:
+    """Write a posterior whose decay lengths are twice those of the shipped one."""
+    found = learned().friction.hyperparameters.copy()
+    found[:, 1] += np.log(2)
+    source = LearnedSource(title="Own", citation="Own 2026", opened="full text", points=3, shipped=False)
+    EvidencePosterior(hyperparameters=found, fingerprint="1", shipped_fingerprint="2", sources=(source,)).write(path)
+
+
 def write_inputs(place: Path) -> None:
     """Write files of every kind that commands measure or read."""
     rng = np.random.default_rng(0)
     time = np.arange(0, 20, 0.01)
     force = 0.4 + 0.02 * np.sin(2 * np.pi * time) + 0.01 * rng.standard_normal(time.size)
+    _write_posterior(place / "posterior.json")
     (place / "studies.csv").write_text("study,sliding_speed [mm/s],friction_reduction [%],source\nOwn,50,40,page 3\n")
     _table(place / "friction.csv", "time (s),friction_force (N)", time, force)
     _table(place / "other.csv", "time (s),friction_force (N)", time, 2 * force)

@@ -19,7 +19,7 @@ from sonolube.prediction.within_plane import (
 from sonolube.rig.vibration_direction import VibrationDirection
 
 ALONG = VibrationDirection(direction="along")
-LOWEST = 0.62 / 6.64  # D 1.3.1: 0.62 mm/s against 6.64 mm/s
+LOWEST = 0.05e-3 / (2 * pi * 26e3 * 0.35e-6)  # Luo et al., figure 5b: 0.05 mm/s against 26 kHz and 0.35 um
 
 
 def at(zeta: float, direction: VibrationDirection, *, factor: float = 1.0) -> Any:
@@ -70,10 +70,15 @@ def test_vibrations_within_the_plane_alone_are_predicted() -> None:
     assert not is_predicted(VibrationDirection(direction="normal"))
 
 
-def test_the_published_points_are_those_of_littmann_and_of_gutowski() -> None:
-    littmann, gutowski = plane_rigs()
+def test_the_published_points_are_those_of_littmann_of_gutowski_and_of_luo() -> None:
+    littmann, gutowski, luo = plane_rigs()
     assert littmann.name == "L-1 of Littmann et al."
     assert gutowski.name == "L-2 of Gutowski and Leus"
+    assert luo.name == "M of Luo et al."
+    # the numbers printed above the bars of figure 5b
+    assert luo.friction_ratio == approx([0.154, 0.146, 0.140, 0.113, 0.104], abs=6e-4)
+    assert luo.at.conditions.vibration_amplitude == approx([0.35e-6] * 5)
+    assert luo.at.conditions.sliding_speed == approx([0.05e-3, 0.1e-3, 0.2e-3, 0.5e-3, 1e-3])
     assert (littmann.friction_ratio[0], gutowski.friction_ratio[0]) == approx((1.0, 0.1))
     assert gutowski.at.conditions.sliding_speed == approx([0.62e-3])
     assert gutowski.uncertainty == approx([0.05])
@@ -99,7 +104,7 @@ def test_sliding_slower_than_tested_is_said_from_a_twentieth_on(share: float, is
     found = plane_extrapolation(at(share * LOWEST, ALONG))
     assert bool(found) is is_said
     if is_said:
-        assert found[0].endswith("v_r/(omega a) 0.088, tested down to 0.093")
+        assert found[0].endswith("v_r/(omega a) 0.00082, tested down to 0.00087")
     # on a circle the size is sqrt(2) amplitudes
     circle = VibrationDirection(direction="along", second_direction="across", second_fraction=1.0, second_phase=pi / 2)
     assert bool(plane_extrapolation(at(share * LOWEST * sqrt(2), circle))) is is_said
@@ -107,18 +112,18 @@ def test_sliding_slower_than_tested_is_said_from_a_twentieth_on(share: float, is
 
 def test_how_far_coulombs_law_was_tested_is_said_by_direction() -> None:
     along, across = (VibrationDirection(direction=word) for word in ("along", "across"))
-    assert plane.tested_words(along).endswith("by Coulomb's law tested with 2 published points")
+    assert plane.tested_words(along).endswith("by Coulomb's law tested with 7 published points")
     assert plane.tested_words(across).endswith("by theory alone (Coulomb's law, compared with no experiment)")
     first, width, compliance = plane_caveats(along)
     assert (
         "L-1 of Littmann et al. (1.00 where the law has 1.00) and L-2 of Gutowski and Leus (0.10 where the law has"
-        " 0.06)" in first
+        " 0.06) and M of Luo et al. (0.15 where the law has 0.00)" in first
     )
-    assert "at v_r/(omega a) of 0.093 to 1" in first
+    assert "at v_r/(omega a) of 0.00087 to 1" in first
     assert first.endswith("and with no others")
     assert "untested" not in width
     assert "no compliance" in compliance
     other, wider, _ = plane_caveats(across)
     assert "theory alone" in other
     assert wider.endswith("for an untested direction it is larger, by an assumption")
-    assert exp(log(LOWEST)) == approx(0.0934, abs=1e-4)
+    assert exp(log(LOWEST)) == approx(8.74e-4, rel=1e-3)

@@ -151,7 +151,7 @@ def test_arguments_of_each_kind_have_its_form(document: dict[str, Any]) -> None:
     }
     assert friction["properties"]["join"]["type"] == "boolean"
     schema = body(operations(document)["/tasks/schema"])["properties"]["kind"]
-    assert (schema["enum"], schema["default"]) == (["rig", "protocol", "devices", "tasks"], "rig")
+    assert (schema["enum"], schema["default"]) == (["rig", "protocol", "devices", "evidence", "tasks"], "rig")
     sweep = body(operations(document)["/tasks/sweep"])["properties"]
     assert sweep["over"]["type"] == ["object", "null"]
     assert sweep["workers"] == {

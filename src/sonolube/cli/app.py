@@ -60,6 +60,7 @@ class Command:
 _OWN_FUNCTIONS = {
     "new": "sonolube.cli.new:new",
     "identify rig": "sonolube.cli.identify_rig:identify_rig",
+    "evidence learn": "sonolube.cli.evidence_learn:evidence_learn",
     "mapping": "sonolube.cli.mapping:mapping",
 }
 """Tasks of which a terminal has a function of its own."""
@@ -85,6 +86,7 @@ GROUPS = {
     "export": "Export a rig to other programs.",
     "measure": "Measure what instruments recorded: friction, surfaces, spectra, vibration.",
     "lab": "Laboratory: run protocols on a rig, and keep their records.",
+    "evidence": "Published tests that predictions learn from: list, check, draw, and learn from your own.",
     "identify": "Identify the parameters of a rig from facts, and what sets the decay length of a contact.",
 }
 """Help of each group of commands."""

@@ -1,7 +1,7 @@
 """Calibration: every published rig predicted without its own tests, beside simpler predictions of the same tests."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Final
 
@@ -16,7 +16,7 @@ from sonolube.prediction.hierarchy import (
     continuous_ranked_probability_score,
     interval_score,
 )
-from sonolube.prediction.posterior import Population, published_population
+from sonolube.prediction.posterior import Population, Posterior, published_population
 from sonolube.prediction.predictive import ratio_draws
 from sonolube.prediction.within_plane import plane_posterior, plane_rigs
 
@@ -29,7 +29,7 @@ MEAN_RATIO: Final = "mean ratio with its scatter"
 BY_RECORDS: Final = "decay length by records"
 """Name of the way with roughness as in the records, which no user has before a test."""
 
-SAME_TRIBOMETER: Final = (("A", "C", "D", "E", "F"), ("B",), ("G",), ("H",))
+SAME_TRIBOMETER: Final = (("A", "C", "D", "E", "F"), ("B",), ("G",), ("H",), ("P",))
 """Sets by the rig that they were measured on."""
 
 _RECORD_PRIOR: Final = Prior(length_factor=(1.0, 0.5), length_spread=(0.1, 1e-3))
@@ -94,6 +94,10 @@ class Calibration:
 
         return float(binomtest(self.covered(probability), len(self.predictions), probability).pvalue)
 
+    def of_rigs(self, some: Callable[[str], bool]) -> "Calibration":
+        """Calibration of the tests of some rigs, by their names."""
+        return replace(self, predictions=tuple(one for one in self.predictions if some(one.rig)))
+
     @property
     def scores(self) -> Floats:
         """Continuous ranked probability score of each test. []"""
@@ -105,6 +109,17 @@ class Calibration:
     def crps(self) -> float:
         """Mean continuous ranked probability score. []"""
         return float(np.mean(self.scores))
+
+    @property
+    def rigs(self) -> int:
+        """Number of rigs whose tests were predicted."""
+        return len({one.rig for one in self.predictions})
+
+    @property
+    def crps_by_rig(self) -> float:
+        """Mean over rigs of the mean continuous ranked probability score of each. []"""
+        names = np.array([one.rig for one in self.predictions])
+        return float(np.mean([self.scores[names == name].mean() for name in np.unique(names)]))
 
     @property
     def interval_score(self) -> float:
@@ -180,9 +195,14 @@ def plane_calibration() -> Calibration:
     return Calibration(name="within the plane", predictions=tuple(predictions))
 
 
-def mean_ratio_calibration(groups: tuple[tuple[str, ...], ...] = ()) -> Calibration:
-    """Calibration of the mean ratio of the other tests with its scatter; groups as in `blind_calibration`."""
-    return _rival_calibration(MEAN_RATIO, _mean_ratio, published_rigs(), groups=groups)
+def mean_ratio_calibration(
+    groups: tuple[tuple[str, ...], ...] = (), *, rigs: Sequence[TestedRig] | None = None
+) -> Calibration:
+    """Calibration of the mean ratio of the other tests with its scatter, by default of the shipped tests.
+
+    Groups are as in `blind_calibration`.
+    """
+    return _rival_calibration(MEAN_RATIO, _mean_ratio, published_rigs() if rigs is None else rigs, groups=groups)
 
 
 def population_calibration(
@@ -196,6 +216,12 @@ def population_calibration(
         for place in places:
             predictions += _unseen(rigs[place], ratio_draws(posterior, rigs[place].at, count=_DRAWS))
     return _in_order(name, predictions, rigs)
+
+
+def prediction_of_others(posterior: Posterior, rigs: Sequence[TestedRig], *, name: str = "") -> Calibration:
+    """Calibration of rigs that a posterior was not learned from."""
+    found = [one for rig in rigs for one in _unseen(rig, ratio_draws(posterior, rig.at, count=_DRAWS))]
+    return Calibration(name=name, predictions=tuple(found))
 
 
 def _rival_calibration(

@@ -7,7 +7,6 @@ in decay lengths of the contact's force.
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
-from itertools import groupby
 from math import hypot, log, pi
 from typing import Final
 
@@ -17,6 +16,7 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats, Integers
 from sonolube.models.contact import decay_length, separation
 from sonolube.models.friction import tabulated_spring_ratio, tabulated_stick_slip_ratio
+from sonolube.prediction.published_source import PublishedRig, shipped_sources
 from sonolube.rig import ResolvedRig
 from sonolube.rig.amplitude_source import AMPLITUDE_ERROR
 from sonolube.validation.published_tests import FrictionTest, friction_tests
@@ -202,7 +202,6 @@ CLOSURES: Final = (
 REFERENCE_DECAY_LENGTH: Final = 1.5e-6
 """Decay length l_0 of the force of a worn contact, about which that of the population is sought. [m]"""
 
-_RESONANCE: Final = (2.0, 0.7)  # gain of set H over the quasi-static stroke, of which nothing is printed; its spread
 UNSTATED_UNCERTAINTY: Final = 0.05
 """Of a friction ratio without printed scatter; the printed ones have 0.047. []"""
 
@@ -233,13 +232,37 @@ class TestedRig:
 
 @cache
 def published_rigs() -> tuple[TestedRig, ...]:
-    """Sets A to H of the published tests as rigs, of whose decay lengths nothing is known.
+    """Shipped tests with vibration along the normal as rigs, of whose decay lengths nothing is known.
 
     No roughness enters: printed ones, worn or not, do not order the decay lengths that the tests ask for, and the 6 um
-    of most records is a guess by comparison standards. On the flextensional actuator of set H the amplitude at
-    resonance was not measured: it is the quasi-static stroke times 2, within a factor of 2 (one standard deviation).
+    of most records is a guess by comparison standards. Where an amplitude was not measured, its file has a median
+    factor and a spread.
     """
-    return tuple(_rig(name, tuple(tests)) for name, tests in groupby(friction_tests(), lambda test: test.set_name))
+    return tuple(
+        tested_rig(rig, name=rig.section.set) for source in shipped_sources() for rig in source.rigs if rig.is_normal
+    )
+
+
+def tested_rig(rig: PublishedRig, *, name: str) -> TestedRig:
+    """Published tests with vibration along the normal as a rig."""
+    points = rig.points
+    conditions = Conditions(
+        vibration_amplitude=np.array([point.vibration_amplitude for point in points], dtype=np.float64),
+        frequency=np.array([point.frequency for point in points], dtype=np.float64),
+        sliding_speed=np.array([point.sliding_speed for point in points]),
+        decay_length=np.full(len(points), REFERENCE_DECAY_LENGTH),
+    )
+    return TestedRig(
+        name=name,
+        at=UncertainConditions(
+            conditions=conditions,
+            decay_length_spread=None,
+            amplitude_spread=rig.section.amplitude_spread or AMPLITUDE_ERROR,
+            amplitude_factor=rig.section.amplitude_factor,
+        ),
+        friction_ratio=np.array([point.friction_ratio for point in points]),
+        uncertainty=np.array([point.uncertainty or UNSTATED_UNCERTAINTY for point in points]),
+    )
 
 
 @cache
@@ -267,31 +290,18 @@ def _logs(at: Conditions) -> Floats:
 
 @cache
 def rigs_by_records() -> tuple[TestedRig, ...]:
-    """Sets A to H with the decay length R_q/lambda of their records as reference, which no user has before a test."""
+    """Published rigs that have records, with the decay length R_q/lambda of these as reference.
+
+    No user has it before a test.
+    """
+    recorded = {test.set_name for test in friction_tests()}
     found = []
     for rig in published_rigs():
+        if rig.name not in recorded:
+            continue
         lengths = np.array([_decay_length(test) for test in friction_tests() if test.set_name == rig.name])
         found.append(replace(rig, at=replace(rig.at, conditions=replace(rig.at.conditions, decay_length=lengths))))
     return tuple(found)
-
-
-def _rig(name: str, tests: tuple[FrictionTest, ...]) -> TestedRig:
-    """One set of tests as a rig."""
-    gain, amplitude_spread = _RESONANCE if name == "H" else (1.0, AMPLITUDE_ERROR)
-    conditions = Conditions(
-        vibration_amplitude=np.array([test.vibration_amplitude for test in tests]),
-        frequency=np.array([test.frequency for test in tests]),
-        sliding_speed=np.array([test.sliding_speed for test in tests]),
-        decay_length=np.full(len(tests), REFERENCE_DECAY_LENGTH),
-    )
-    return TestedRig(
-        name=name,
-        at=UncertainConditions(
-            conditions=conditions, decay_length_spread=None, amplitude_spread=amplitude_spread, amplitude_factor=gain
-        ),
-        friction_ratio=np.array([test.friction_ratio for test in tests]),
-        uncertainty=np.array([test.uncertainty or UNSTATED_UNCERTAINTY for test in tests]),
-    )
 
 
 _MARGIN = 1.05  # of the largest tested one

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -12,6 +13,7 @@ from sonolube.errors import InvalidInput
 from sonolube.models.dynamics import Structure
 from sonolube.prediction.applicability import Applicability, applicability, contact_heating
 from sonolube.prediction.bodies import pair_of
+from sonolube.prediction.evidence_posterior import EvidencePosterior, read_evidence_posterior
 from sonolube.prediction.further_measurements import (
     KNOWN_WELL,
     Measure,
@@ -25,7 +27,7 @@ from sonolube.prediction.further_measurements import (
 )
 from sonolube.prediction.hierarchy import LEVELS, sorted_quantiles
 from sonolube.prediction.inputs import Input, OwnRuns, RigInputs, decay_length_of, own_runs, rig_inputs
-from sonolube.prediction.posterior import learned
+from sonolube.prediction.posterior import Posterior, learned
 from sonolube.prediction.predictive import DRAWS, Laboratory, RigPrediction, laboratory, rig_prediction
 from sonolube.prediction.rig_statement import prediction_attributes, statement, wear_sentence
 from sonolube.prediction.wear import vibration_weight
@@ -54,6 +56,9 @@ class LivePrediction:
         Own measured runs over `run`, as `sonolube.measurement.measured_runs.read_runs` returns them.
     laboratory_runs : sequence of (Rig, xarray.Dataset)
         Other rigs of the same laboratory with runs of each, which tell of the decay length and its scatter.
+    evidence : EvidencePosterior, str or Path, optional
+        Posterior that was learned with own published tests, or its file, in place of the shipped one: of vibration
+        along the normal.
     pin, disc : str, optional
         Materials of the catalogue, for the temperature rise of the contact; by default those of the rig.
     lubricant : bool
@@ -84,6 +89,7 @@ class LivePrediction:
         *,
         runs: "xr.Dataset | None" = None,
         laboratory_runs: "Sequence[tuple[Rig, xr.Dataset]]" = (),
+        evidence: EvidencePosterior | str | Path | None = None,
         pin: str | None = None,
         disc: str | None = None,
         lubricant: bool = False,
@@ -95,8 +101,10 @@ class LivePrediction:
         self._runs, self._materials, self._lubricant = runs, (pin, disc), lubricant
         self._draws, self._seed = draws, seed
         self._kept: tuple[tuple[VibrationDirection, bytes], RigPrediction] | None = None
-        self._laboratory = _laboratory(laboratory_runs, seed=seed) if laboratory_runs else None
-        self._posterior = learned().friction if self._laboratory is None else self._laboratory.posterior
+        self._evidence = read_evidence_posterior(evidence) if isinstance(evidence, str | Path) else evidence
+        self._population = learned().friction if self._evidence is None else self._evidence.posterior
+        self._laboratory = _laboratory(self._population, laboratory_runs, seed=seed) if laboratory_runs else None
+        self._posterior = self._population if self._laboratory is None else self._laboratory.posterior
         self.first: LabelledArrays = self.at(rig)
 
     def at(self, rig: Rig) -> LabelledArrays:
@@ -127,8 +135,14 @@ class LivePrediction:
             raise InvalidInput(
                 f"{rig.title}: other rigs tell of the decay length alone, without effect here; leave them out"
             )
-        if self._laboratory is not None and not inputs.measured_length:
-            inputs = inputs.with_input(decay_length_of(self._posterior, known_from=self._laboratory.known_from))
+        if self._evidence is not None and not inputs.direction.is_normal:
+            raise InvalidInput(
+                f"{rig.title}: evidence {self._evidence.name} was learned along the normal, and this rig vibrates"
+                " within the plane; leave evidence out"
+            )
+        known_from = _known_from(self._evidence, self._laboratory)
+        if known_from and not inputs.measured_length:
+            inputs = inputs.with_input(decay_length_of(self._posterior, known_from=known_from))
         own = None if self._runs is None else own_runs(self._runs, inputs, title=rig.title)
         if own is not None and own.friction is not None:
             inputs = inputs.with_input(own.friction)
@@ -153,7 +167,7 @@ class LivePrediction:
             drawn |= self._wear(rig, found, own, ratio)
         uncertain = sorted(inputs.uncertain, key=lambda each: -each.spread)
         logs = own_logarithms(found, intrinsic=intrinsic, seed=self._seed)
-        probes = () if inputs.measured_length else _told_probes(rig, inputs)
+        probes = () if inputs.measured_length else _told_probes(rig, inputs, self._population)
         better = () if unknown else measures(found, inputs, ratio=ratio, probes=probes, seed=self._seed)
         variables = {
             **{
@@ -180,7 +194,7 @@ class LivePrediction:
             coordinates={
                 name: LabelledArray(dims=(name,), values=np.asarray(values)) for name, values in coordinates.items()
             },
-            attrs=prediction_attributes(rig, inputs, own, found, limits, self._laboratory)
+            attrs=prediction_attributes(rig, inputs, own, found, limits, self._laboratory, self._evidence)
             | {
                 "stiffness_probes": "" if inputs.measured_length else "\n".join(probe_sentences(probes)),
                 "heat": heating if isinstance(heating, str) else "",
@@ -242,6 +256,7 @@ def predict(
     *,
     runs: "xr.Dataset | None" = None,
     laboratory_runs: "Sequence[tuple[Rig, xr.Dataset]]" = (),
+    evidence: EvidencePosterior | str | Path | None = None,
     pin: str | None = None,
     disc: str | None = None,
     lubricant: bool = False,
@@ -253,7 +268,7 @@ def predict(
     Parameters
     ----------
     rig : Rig
-    runs, laboratory_runs, pin, disc, lubricant, draws, seed
+    runs, laboratory_runs, evidence, pin, disc, lubricant, draws, seed
         As of `LivePrediction`.
 
     Returns
@@ -276,29 +291,45 @@ def predict(
         For a material without thermal properties.
     """
     live = LivePrediction(
-        rig, runs=runs, laboratory_runs=laboratory_runs, pin=pin, disc=disc, lubricant=lubricant, draws=draws, seed=seed
+        rig,
+        runs=runs,
+        laboratory_runs=laboratory_runs,
+        evidence=evidence,
+        pin=pin,
+        disc=disc,
+        lubricant=lubricant,
+        draws=draws,
+        seed=seed,
     )
     return live.first.dataset()
 
 
-def _told_probes(rig: Rig, inputs: RigInputs) -> tuple[Probe, ...]:
+def _told_probes(rig: Rig, inputs: RigInputs, population: Posterior) -> tuple[Probe, ...]:
     """Resonances that may show the contact stiffness, at decay lengths of the population."""
-    found = () if rig.structure is None else _probes(rig.structure, rig.normal_load)
+    found = () if rig.structure is None else _probes(rig.structure, rig.normal_load, population)
     return told_probes(found, frequency=inputs.frequency)
 
 
 @lru_cache(maxsize=16)
-def _probes(structure: Structure, normal_load: float) -> tuple[Probe, ...]:
+def _probes(structure: Structure, normal_load: float, population: Posterior) -> tuple[Probe, ...]:
     """Probes of a structure under a load, which stay while drive and speed change."""
-    middle, spread = learned().friction.decay_length()
+    middle, spread = population.decay_length()
     lengths = middle * np.exp(spread * np.array([-_WITHIN_80, 0.0, _WITHIN_80]))
     return stiffness_probes(structure, normal_load=normal_load, decay_length=lengths)
 
 
-def _laboratory(rigs_with_runs: "Sequence[tuple[Rig, xr.Dataset]]", *, seed: int) -> Laboratory:
+def _known_from(evidence: EvidencePosterior | None, of_rigs: Laboratory | None) -> str:
+    """Tests that the population is known from, in words; empty where it is the shipped one."""
+    tests = "" if evidence is None else evidence.known_from
+    if of_rigs is None:
+        return tests
+    return f"{tests}, {of_rigs.rigs_in_words}" if tests else of_rigs.known_from
+
+
+def _laboratory(population: Posterior, rigs_with_runs: "Sequence[tuple[Rig, xr.Dataset]]", *, seed: int) -> Laboratory:
     """Population of a laboratory from the runs of its rigs."""
     tested = [own_runs(runs, rig_inputs(rig), title=rig.title).tested for rig, runs in rigs_with_runs]
-    return laboratory(learned().friction, tested, seed=seed)
+    return laboratory(population, tested, seed=seed)
 
 
 def _frictional(ratio: Floats, intrinsic: Floats, rig: Rig, heating: float | str) -> dict[str, Floats]:

@@ -122,10 +122,10 @@ def write_learned(path: Path, *, friction: Mapping[str, Floats], wear: Floats) -
     write_atomically(path, json.dumps(content).replace("], ", "],\n") + "\n")  # one column a line
 
 
-def evidence_fingerprint() -> str:
-    """Hash of the published tests and the priors, by which stale data are recognised."""
+def evidence_fingerprint(further: Sequence[TestedRig] = ()) -> str:
+    """Hash of the shipped tests, further ones and the priors, by which stale data are recognised."""
     numbers: list[Any] = [[closure.name, *np.round(np.ravel(POPULATION_PRIOR.of(closure)), 6)] for closure in CLOSURES]
-    numbers += [_digits(rig) for rig in published_rigs()]
+    numbers += [[rig.name, *rig_digits(rig)] for rig in (*published_rigs(), *further)]
     numbers += [[pair.name, *np.round(pair.wear_rate_ratio, 6), pair.uncertainty] for pair in published_wear()]
     return sha256(repr([list(map(str, row)) for row in numbers]).encode()).hexdigest()[:16]
 
@@ -152,13 +152,28 @@ class Population:
         """Population of some rigs under a prior."""
         means, deviations = prior.of(closure)
         draws = means + deviations * standard_normals(PRIOR_DRAWS, columns=len(HYPERPARAMETERS), seed=2)
-        logs = np.column_stack([RigLikelihood(closure, rig)(draws) for rig in rigs])
-        return cls(closure=closure, draws=draws, log_likelihoods=logs)
+        population = cls(closure=closure, draws=draws, log_likelihoods=np.zeros((len(draws), 0)))
+        for rig in rigs:
+            population = population.with_rig(rig)
+        return population
+
+    def with_rig(self, rig: TestedRig) -> "Population":
+        """Population with the likelihood of a further rig, the last."""
+        logs = RigLikelihood(self.closure, rig)(self.draws)
+        return replace(self, log_likelihoods=np.column_stack([self.log_likelihoods, logs]))
+
+    def of_first(self, count: int) -> "Population":
+        """Population of the first rigs alone."""
+        return replace(self, log_likelihoods=self.log_likelihoods[:, :count])
+
+    def shares(self, *, without: tuple[int, ...] = ()) -> Floats:
+        """Posterior probability of each draw by all rigs but some, shape (h,)."""
+        total = np.delete(self.log_likelihoods, without, axis=1).sum(axis=1)
+        return np.asarray(np.exp(total - np.logaddexp.reduce(total)))
 
     def posterior(self, *, without: tuple[int, ...] = ()) -> Posterior:
         """Posterior by all rigs but some, by importance resampling of the draws."""
-        total = np.delete(self.log_likelihoods, without, axis=1).sum(axis=1)
-        share = np.exp(total - np.logaddexp.reduce(total))
+        share = self.shares(without=without)
         rows = np.random.default_rng(0).choice(share.size, size=share.size, p=share)
         return Posterior(closure=self.closure, hyperparameters=self.draws[rows])
 
@@ -174,12 +189,12 @@ def _columns(names: Sequence[str], draws: Floats) -> dict[str, list[float]]:
     return {name: np.round(column, 4).tolist() for name, column in zip(names, draws.T, strict=True)}
 
 
-def _digits(rig: TestedRig) -> list[Any]:
-    """Numbers of a rig, rounded to what a rounding error of another processor leaves the same."""
+def rig_digits(rig: TestedRig) -> list[Any]:
+    """Numbers of a rig without its name, rounded to what a rounding error of another processor leaves the same."""
     at = rig.at.conditions
     arrays = (at.vibration_amplitude, at.frequency, at.sliding_speed, at.decay_length, rig.friction_ratio)
     logs = [f"{value:.6g}" for array in (*arrays, rig.uncertainty) for value in array]
-    return [rig.name, *logs, rig.at.decay_length_spread, rig.at.amplitude_spread, rig.at.amplitude_factor]
+    return [*logs, rig.at.decay_length_spread, rig.at.amplitude_spread, rig.at.amplitude_factor]
 
 
 _POOL: Final = 8192  # draws that are weighed

@@ -274,8 +274,13 @@ class Laboratory:
     @property
     def known_from(self) -> str:
         """Tests that the population is known from, in words."""
+        return f"published tests and {self.rigs_in_words}"
+
+    @property
+    def rigs_in_words(self) -> str:
+        """Number of its rigs whose runs entered, in words."""
         count = len(self.taught_by)
-        return f"published tests and {count} {'rig' if count == 1 else 'rigs'} of the laboratory"
+        return f"{count} {'rig' if count == 1 else 'rigs'} of the laboratory"
 
     @property
     def caveats(self) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.prediction.applicability import NORMAL_VIBRATION, Applicability, extrapolation_caveats
 from sonolube.prediction.bodies import pair_of, wear_statement, worn_body
+from sonolube.prediction.evidence_posterior import EvidencePosterior
 from sonolube.prediction.hierarchy import PROBABILITIES, central_interval, sorted_quantiles
 from sonolube.prediction.inputs import OwnRuns, RigInputs
 from sonolube.prediction.predictive import Laboratory, RigPrediction, RunCheck
@@ -85,6 +86,7 @@ def prediction_attributes(
     found: RigPrediction,
     limits: Applicability,
     laboratory: Laboratory | None,
+    evidence: EvidencePosterior | None = None,
 ) -> dict[str, object]:
     """Title, caveats, assumptions and numbers without a distribution of a prediction."""
     point = inputs.point
@@ -92,6 +94,7 @@ def prediction_attributes(
     own_caveats = [each for each in point.caveats if not said_above or each not in direction_caveats(resolved_rig(rig))]
     caveats = [*limits.caveats, *own_caveats, *extrapolation_caveats(rig, inputs)]
     caveats += () if laboratory is None else laboratory.caveats
+    caveats += () if evidence is None else evidence.caveats
     if own is not None:
         caveats += [*_outlier_caveats(found.check, own), *own.caveats]
         if own.wear_rate_ratio.size and not rig.direction.is_normal:
@@ -108,6 +111,10 @@ def prediction_attributes(
         "sliding_speed": inputs.sliding_speed,
         "runs": 0 if own is None else own.tested.friction_ratio.size,
     }
+    if evidence is not None:
+        attributes["evidence"] = evidence.name
+        attributes["evidence_fingerprint"] = evidence.fingerprint
+        attributes["evidence_sources"] = "\n".join(source.citation for source in evidence.sources)
     if not rig.direction.is_normal:
         attributes["tested"] = tested_words(rig.direction)
     if point.power is not None:

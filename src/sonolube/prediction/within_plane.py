@@ -53,10 +53,10 @@ from sonolube.prediction.evidence import (
 )
 from sonolube.prediction.hierarchy import OWN_DEVIATES, POPULATION_PRIOR, standard_normals
 from sonolube.prediction.posterior import Posterior, RigDraws, learned, systematic_rows
+from sonolube.prediction.published_source import PublishedRig, shipped_sources
 from sonolube.rig.amplitude_source import AMPLITUDE_ERROR
 from sonolube.rig.vibration_direction import VibrationDirection
 from sonolube.text.units import format_si
-from sonolube.validation.published_tests import InPlaneTest, in_plane_tests
 
 NO_WEAR: Final = (
     "Wear is not predicted: neither a wear law nor a published wear test is of vibration within the plane; measure it."
@@ -71,6 +71,10 @@ NO_LENGTH_ERROR: Final = 1e-9
 
 _NODES: Final = 32  # of the integral over what one rig has of its own
 _DRAWS: Final = 2048  # of the hyperparameters
+UNSTATED_FREQUENCY: Final = 3e3
+"""Frequency of a published vibration of which the velocity alone is printed, an assumption. [Hz]"""
+
+_FREQUENCY_SPREAD: Final = 0.8  # of its logarithm, which is that of the amplitude
 _RING: Final = 12  # directions of a turning ring: an error of 4e-7
 _ALONG: Final = 1e-9  # sine below which a direction is along the sliding
 _UNTESTED_DIRECTION: Final = 1.0  # distance of a direction across the sliding: an assumption
@@ -239,8 +243,37 @@ SPRINGS: Final = Closure(
 
 @cache
 def plane_rigs() -> tuple[TestedRig, ...]:
-    """Rigs of the published points within the plane, with the uncertainty of those without scatter."""
-    return tuple(_rig(test) for test in in_plane_tests())
+    """Published points within the plane by rig, with the uncertainty of those without scatter where none is printed."""
+    return tuple(_rig(rig) for source in shipped_sources() for rig in source.rigs if not rig.is_normal)
+
+
+def _rig(published: PublishedRig) -> TestedRig:
+    """Published points within the plane on one rig; of a stated velocity the amplitude alone has an error."""
+    points, section = published.points, published.section
+    frequency = np.array([point.frequency or UNSTATED_FREQUENCY for point in points])
+    velocity = np.array([point.vibration_velocity for point in points])
+    is_velocity = all(point.states_velocity for point in points)
+    is_assumed = any(point.frequency is None for point in points)
+    conditions = PlaneConditions(
+        vibration_amplitude=velocity / (2 * pi * frequency),
+        frequency=frequency,
+        sliding_speed=np.array([point.sliding_speed for point in points]),
+        decay_length=np.full(len(points), REFERENCE_DECAY_LENGTH),
+        direction=section.path,
+        peak_velocity=velocity if is_velocity else None,
+    )
+    name = points[0].label if len(points) == 1 else section.set
+    return TestedRig(
+        name=f"{name} of {published.source}",
+        at=UncertainConditions(
+            conditions=conditions,
+            decay_length_spread=NO_LENGTH_ERROR,
+            amplitude_spread=_FREQUENCY_SPREAD if is_assumed else section.amplitude_spread or AMPLITUDE_ERROR,
+            amplitude_factor=section.amplitude_factor,
+        ),
+        friction_ratio=np.array([point.friction_ratio for point in points]),
+        uncertainty=np.array([point.uncertainty or UNSTATED_UNCERTAINTY for point in points]),
+    )
 
 
 @cache
@@ -298,43 +331,18 @@ def _log_likelihood(place: int) -> Floats:
     return np.asarray(np.logaddexp.reduce(densities, axis=1) - np.log(_NODES))
 
 
-def _rig(test: InPlaneTest) -> TestedRig:
-    """TEMP"""
-    import math
-
-    freq = {"L-1": 60e3, "L-2": 2e3}.get(test.label, 26e3)
-    conditions = PlaneConditions(
-        vibration_amplitude=np.array([test.vibration_velocity / (2 * math.pi * freq)]),
-        frequency=np.array([freq]),
-        sliding_speed=np.array([test.sliding_speed]),
-        decay_length=np.array([REFERENCE_DECAY_LENGTH]),
-        direction=VibrationDirection(vibration_direction=test.vibration_direction),
-        peak_velocity=np.array([test.vibration_velocity]) if test.label == "L-2" else None,
-    )
-    return TestedRig(
-        name=f"{test.label} of {test.study}",
-        at=UncertainConditions(
-            conditions=conditions,
-            decay_length_spread=NO_LENGTH_ERROR,
-            amplitude_spread=0.8 if test.label == "L-2" else AMPLITUDE_ERROR,
-        ),
-        friction_ratio=np.array([test.friction_ratio]),
-        uncertainty=np.array([UNSTATED_UNCERTAINTY]),
-    )
-
-
 def tested_words(direction: VibrationDirection) -> str:
     """How far the law was tested in a direction, as the beginning of a sentence."""
     law = "springs on exponential heights"
     if _is_along(direction):
-        return f"Vibration {direction.text}, by {law} tested with {_points()[0]} published points"
+        return f"Vibration {direction.text}, by {law} tested with {tested_points()[0]} published points"
     return f"Vibration {direction.text}, by theory alone ({law}, compared with no experiment)"
 
 
 def plane_caveats(direction: VibrationDirection) -> tuple[str, ...]:
     """How far a prediction within the plane was tested, what is known of the slip length, and what the law misses."""
     low, high = tested_velocity_ratios()
-    points, sources = _points()
+    points, sources = tested_points()
     tested = (
         f"{points} published points of {sources} sources along the sliding, {', '.join(_compared())}, at v_r/(omega a)"
         f" of {low:.2g} to {high:.2g}"
@@ -355,7 +363,7 @@ def plane_caveats(direction: VibrationDirection) -> tuple[str, ...]:
     return (first, slip, rate) if falling else (first, slip)
 
 
-def _points() -> tuple[int, int]:
+def tested_points() -> tuple[int, int]:
     """Number of published points within the plane, and of their sources."""
     return sum(rig.friction_ratio.size for rig in plane_rigs()), len(plane_rigs())
 

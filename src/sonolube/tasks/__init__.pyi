@@ -1,4 +1,5 @@
 from . import (
+    evidence as evidence,
     export as export,
     horn as horn,
     identify as identify,

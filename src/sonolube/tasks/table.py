@@ -135,6 +135,10 @@ TASKS: Final = (
     Task(_COMPARE, "fit", "compare.compare:fit", "{runs}-fit.*"),
     Task(_COMPARE, "identify rig", "identify.rig_of_facts:rig"),
     Task(_COMPARE, "identify decay-length", "identify.decay_length_of_run:decay_length", "{file}-decay-length.*"),
+    Task(_COMPARE, "evidence list", "evidence.published_tests:list"),
+    Task(_COMPARE, "evidence check", "evidence.published_tests:check"),
+    Task(_COMPARE, "evidence plot", "evidence.published_tests:plot", "evidence.*"),
+    Task(_COMPARE, "evidence learn", "evidence.learned_posterior:learn"),
     Task(_COMPARE, "literature", "compare.literature:literature", "map-of-studies.* studies.csv"),
     Task(_COMPARE, "reproduce", "compare.reproduce:reproduce", "reproduction.html validation.json figures/*"),
     Task(LAB, "lab run", "lab.protocol_run:run"),
@@ -153,8 +157,8 @@ TASKS: Final = (
         LOOKUP,
         "example",
         "lookup.example:example",
-        "examples/*.csv examples/*.toml examples/facts/*.toml examples/lab/*.* examples/mappings/*.toml"
-        " examples/protocols/*.toml examples/rigs/*.toml examples/rigs/modes/*.toml",
+        "examples/*.csv examples/*.toml examples/evidence/*.toml examples/facts/*.toml examples/lab/*.*"
+        " examples/mappings/*.toml examples/protocols/*.toml examples/rigs/*.toml examples/rigs/modes/*.toml",
         folder=".",
     ),
     Task(LOOKUP, "mapping", "lookup.mapping:mapping", "{file}-mapping.toml"),

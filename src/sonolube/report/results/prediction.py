@@ -71,6 +71,18 @@ def power_object(prediction: LabelledArrays) -> dict[str, Any]:
     return {"actuator_power": None, **with_former_key(known), **bound}
 
 
+def evidence_object(prediction: LabelledArrays) -> dict[str, Any] | None:
+    """File, fingerprint and sources of the posterior that took the place of the shipped one; None without one."""
+    attributes = prediction.attrs
+    if "evidence" not in attributes:
+        return None
+    return {
+        "file": attributes["evidence"],
+        "fingerprint": attributes["evidence_fingerprint"],
+        "sources": attributes["evidence_sources"].split("\n"),
+    }
+
+
 def column(prediction: LabelledArrays, name: str) -> list[Any]:
     """Values of a variable over the uncertain inputs or measurements."""
     values: list[Any] = prediction[name].to_numpy().tolist()

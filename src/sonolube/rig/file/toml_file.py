@@ -83,7 +83,7 @@ def _complaints(file: type[Section], refusal: ValidationError, content: Mapping[
     A key that an unknown one of its table is like is misspelt and not missing.
     """
     complaints = _details(refusal)
-    while tables := [each["loc"] for each in complaints if each["type"] == "missing" and _keys(file, each["loc"])]:
+    while tables := [each["loc"] for each in complaints if each["type"] == "missing" and _is_table(file, each["loc"])]:
         for place in tables:
             content = _with_table(content, _without_tags(place))
         try:
@@ -159,8 +159,19 @@ def _meant(file: type[Section], place: Sequence[str | int]) -> str:
     return suggestion(str(place[-1]), _keys(file, place[:-1])).removeprefix("did you mean ").removesuffix("?")
 
 
+def _is_table(file: type[Section], place: Sequence[str | int]) -> bool:
+    """Whether a key holds one table, with keys of its own, and not a list of tables."""
+    entries = [each.get("properties", {}).get(place[-1], {}) for each in _places(file, place[:-1])]
+    return bool(_keys(file, place)) and not any("items" in entry for entry in entries)
+
+
 def _keys(file: type[Section], tables: Sequence[str | int]) -> list[str]:
-    """Keys of a table; the kind of a structure, and the place in a list, follow its table's name."""
+    """Keys of a table."""
+    return [key for place in _places(file, tables) for key in place.get("properties", {})]
+
+
+def _places(file: type[Section], tables: Sequence[str | int]) -> list[dict[str, Any]]:
+    """Schemas of a table; the kind of a structure, and the place in a list, follow its table's name."""
     schema = _schema(file)
     places = [schema]
     for name in tables:
@@ -169,7 +180,7 @@ def _keys(file: type[Section], tables: Sequence[str | int]) -> list[str]:
         elif isinstance(name, str) and name not in ROUGHNESS_KINDS:
             entries = [place.get("properties", {}).get(name, {}) for place in places]
             places = [schema["$defs"][known] for entry in entries for known in tables_of(entry)]
-    return [key for place in places for key in place.get("properties", {})]
+    return places
 
 
 @cache
