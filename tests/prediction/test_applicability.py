@@ -8,6 +8,8 @@ import numpy as np
 from pytest import approx, mark, raises
 
 from sonolube.errors import InvalidInput, MissingProperty
+from sonolube.facts.materials import material
+from sonolube.models.thermal import ThermalSolid, contact_rise, real_contact_spot
 from sonolube.prediction import interval, predict
 from sonolube.prediction.applicability import (
     NORMAL_VIBRATION,
@@ -17,6 +19,7 @@ from sonolube.prediction.applicability import (
     extrapolation_caveats,
     friction_interval,
 )
+from sonolube.prediction.bodies import softer_hardness
 from sonolube.prediction.inputs import rig_inputs
 from sonolube.rig import Rig, read_rig
 
@@ -198,6 +201,39 @@ def test_the_pin_is_the_body_whose_contact_stays_so_that_a_moving_insulator_help
         still = 8 / (3 * pi) * radius / pin[0]
         moving = 0.94 * radius / disc[0] / sqrt(peclet)
         assert rise == approx(1 / 2.25e-6 / (1 / still + 1 / moving), rel=0.15)
+
+
+def test_a_spot_of_22_micrometres_under_71_watts_flashes_by_2600_kelvin() -> None:
+    # 5 N at 3.3 GPa: a = sqrt(5/(3.3e9 pi)) = 22.0 um. Steel on steel, k = 45 W/(m K), kappa = 45/(7850 * 475) =
+    # 1.21e-5 m2/s, 30 m/s: v a/kappa = 30 * 22e-6/1.21e-5 = 54.7. Fixed body: 8/(3 pi) a/k per flux; moving one:
+    # 0.94 (c of Tian and Kennedy for the mean of an ellipse, 10 %) a/(k sqrt(v a/kappa)); both in parallel
+    spot = real_contact_spot(normal_load=5.0, hardness=3.3e9)
+    assert spot.half_length == approx(22.0e-6, rel=2e-3)
+    steel = ThermalSolid(thermal_conductivity=45.0, density=7850.0, specific_heat_capacity=475.0)
+    rise = float(contact_rise(steel, steel, spot, heat_rate=71.0, sliding_speed=30.0).mean_temperature_rise)
+    still, moving = 8 / (3 * pi) * 22e-6 / 45, 0.94 * 22e-6 / 45 / sqrt(54.7)
+    assert rise == approx(71 / (pi * 22e-6**2) / (1 / still + 1 / moving), rel=0.1)
+    assert rise == approx(2600, rel=0.1)
+
+
+def test_the_hardness_is_that_of_the_softer_body_or_three_times_the_yield_strength() -> None:
+    assert softer_hardness(tribometer()) == approx(3 * 410e6)  # names no material
+    aluminium = material("aluminium_2024").value("hardness")
+    assert softer_hardness(tribometer(), "stainless_steel_316", "aluminium_2024") == approx(aluminium)
+    assert softer_hardness(tribometer(), "aluminium_2024", "stainless_steel_316") == approx(aluminium)
+
+
+def test_a_pressure_above_the_hardness_is_refused_with_load_area_and_hardness() -> None:
+    # 3 kN over 2.25 mm2 are 1.33 GPa; three times 410 MPa are 1.23 GPa
+    assert applicability(replace(tribometer(), normal_load=2.7e3)).refusal is None
+    refusal = applicability(replace(tribometer(), normal_load=3.0e3)).refusal or ""
+    assert "a load of 3 kN over 2.25 mm2 is 1.33 GPa, above the hardness 1.23 GPa of the softer body" in refusal
+
+
+def test_a_roughness_far_above_that_of_the_published_tests_is_said() -> None:
+    rough = [applicability(tribometer(f"contact.roughness.rms_height={height}um")) for height in (29, 31, 62)]
+    assert [bool(each.caveats) for each in rough] == [False, True, True]
+    assert "62 um is far above the 6 um of the published tests" in rough[2].caveats[0]
 
 
 def test_heat_needs_both_materials_with_thermal_properties_and_says_which_lack() -> None:

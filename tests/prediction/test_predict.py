@@ -181,7 +181,8 @@ def test_the_heat_is_that_of_the_predicted_force_and_needs_both_materials() -> N
     found = predict(rig(), pin=STEEL, disc=ALUMINIUM, draws=300)
     rise, force = found["mean_temperature_rise"].to_numpy(), found["friction_force"].to_numpy()
     assert rise * force.max() == approx(rise.max() * force)
-    assert "Heat of friction does not limit" in found.attrs["statement"]
+    assert "Heat of friction does not limit: at most (80 %) " in found.attrs["statement"]
+    assert "of flash temperature where one real spot of" in found.attrs["statement"]
     with raises(InvalidInput, match="both materials"):
         predict(rig(), pin=STEEL)
 

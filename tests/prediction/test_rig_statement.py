@@ -15,7 +15,7 @@ from sonolube.prediction.applicability import Applicability
 from sonolube.prediction.inputs import own_runs, rig_inputs
 from sonolube.prediction.posterior import learned
 from sonolube.prediction.predictive import Laboratory, RunCheck, rig_prediction
-from sonolube.prediction.rig_statement import prediction_attributes, statement, wear_sentence
+from sonolube.prediction.rig_statement import heat_words, prediction_attributes, statement, wear_sentence
 from sonolube.rig import read_rig
 from sonolube.rig.datasets import LabelledArray, LabelledArrays
 
@@ -25,7 +25,6 @@ RIGS = Path(__file__).parents[2] / "examples" / "rigs"
 def prediction(
     *,
     reduction: tuple[float, float] = (0.2, 0.6),
-    rise: float | None = None,
     left: tuple[float, ...] = (0.5, 0.8),
     labels: tuple[str, ...] = ("one run", "the other"),
     **attributes: Any,
@@ -33,7 +32,7 @@ def prediction(
     """Prediction with draws even between the ends of the 80 % interval of the reduction, and beyond."""
     low, high = reduction
     middle, half = (low + high) / 2, (high - low) / 2 / 0.8
-    found = xr.Dataset(
+    return xr.Dataset(
         {
             "friction_reduction": ("draw", np.linspace(middle - half, middle + half, 1001)),
             "measure_label": ("measure", np.array(labels[: len(left)], dtype=str)),
@@ -41,9 +40,6 @@ def prediction(
         },
         attrs={"contradiction": "", "wear": "", "unknown": 0, "heat": "no materials"} | attributes,
     )
-    if rise is not None:
-        found["mean_temperature_rise"] = ("draw", np.linspace(0, rise / 0.9, 1001))
-    return found
 
 
 def outcome(low: float, high: float) -> str:
@@ -99,16 +95,40 @@ def test_what_to_measure_is_a_run_here_or_the_best_of_the_others() -> None:
     assert statement(prediction(left=()))[1] == "Own runs, fitted by `sonolube fit`, tell what vibration does here."
 
 
-@mark.parametrize(("rise", "verb"), [(49.0, "does not limit"), (51.0, "limits")])
-def test_heat_limits_from_fifty_kelvin_on_at_the_upper_end_of_its_interval(rise: float, verb: str) -> None:
-    found = statement(prediction(rise=rise, power_to_supply=6.234, power_is_at_least=0))[2]
-    assert found == f"Heat of friction {verb}: at most {rise:.2g} K (80 %); the amplifier has to supply 6.23 W."
-    bound = statement(prediction(rise=rise, power_to_supply=6.234, power_is_at_least=1))[2]
-    assert bound.endswith("the amplifier has to supply at least 6.23 W.")
+def test_heat_limits_from_fifty_kelvin_of_the_face_or_five_hundred_of_a_real_spot_on() -> None:
+    # draws even from 0 to d: the upper end of the 80 % interval is 0.9 d; the spot is hotter by the ratio per watt
+    rig = read_rig(RIGS / "tribometer.toml")  # 3 N at three times 410 MPa: a radius of 28 um
+    for face, per_watt, verb in ((49.0, 10.0, "does not limit"), (51.0, 1.0, "limits"), (40.0, 12.6, "limits")):
+        drawn = {"mean_temperature_rise": np.linspace(0, face / 0.9, 1001)}
+        words = heat_words(rig, None, None, drawn, (1.0, per_watt))
+        spot = f"{float(f'{face * per_watt:.2g}'):g}"
+        assert words == (
+            f"Heat of friction {verb}: at most (80 %) {face:.0f} K in the mean over the nominal face, {spot} K of flash"
+            " temperature where one real spot of 28 um radius carries the load"
+        )
+
+
+def test_heat_without_materials_or_hardness_says_what_is_missing() -> None:
+    rig, drawn = read_rig(RIGS / "tribometer.toml"), {"mean_temperature_rise": np.linspace(0, 10, 101)}
+    assert heat_words(rig, None, None, {}, ("no materials", "no materials")) == "Heat is not computed: no materials"
+    bare = replace(rig, contact=replace(rig.contact, pair=replace(rig.contact.pair, yield_strength=np.inf)))
+    words = heat_words(bare, None, None, drawn, (1.0, "no hardness"))
+    assert words.startswith("Heat of friction does not limit the nominal face: at most (80 %) 9 K")
+    assert words.endswith("is not known: the bodies do not yield; give the hardness of the softer one")
+
+
+def test_the_power_to_supply_stands_behind_the_heat() -> None:
+    found = statement(prediction(heat="Heat", power_to_supply=6.234, power_is_at_least=0))[2]
+    assert found == "Heat; the amplifier has to supply 6.23 W."
+    bound = statement(prediction(heat="Heat", power_to_supply=6.234, power_is_at_least=1))[2]
+    assert bound == "Heat; the amplifier has to supply at least 6.23 W."
 
 
 def test_heat_and_power_that_are_not_known_are_said_with_the_reason() -> None:
-    assert statement(prediction())[2] == (
+    assert statement(prediction(heat="Heat is not computed: no materials", actuator_power=1234.0))[2].endswith(
+        "the amplifier supplies 1.23 kW."
+    )
+    assert statement(prediction(heat="Heat is not computed: no materials"))[2] == (
         "Heat is not computed: no materials; power is not known: capacitance or voltage is missing."
     )
 
@@ -127,6 +147,8 @@ def test_an_interval_has_the_probability_that_is_asked_for() -> None:
 def test_wear_is_not_known_where_runs_contradict_and_not_predicted_within_the_plane() -> None:
     rig = read_rig(RIGS / "tribometer.toml")
     assert wear_sentence(rig, ratios=None, contradicted=False).startswith("Wear is not predicted: ")
+    lubricated = wear_sentence(rig, ratios=None, contradicted=False, is_lubricated=True)
+    assert lubricated.startswith("What vibration does to wear is not known of a lubricated contact")
     assert "is not known where the runs contradict" in wear_sentence(rig, ratios=np.ones(9), contradicted=True)
     assert wear_sentence(rig, ratios=np.ones(9), contradicted=False).startswith("Wear does not change")
 

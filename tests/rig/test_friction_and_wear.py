@@ -10,7 +10,7 @@ from pytest import approx, raises
 from scipy.special import i0
 from tests.same import same
 
-from sonolube.errors import InvalidInput, UnknownName
+from sonolube.errors import InvalidInput, OutsideRange, UnknownName
 from sonolube.models.contact import ContactMotion
 from sonolube.models.friction import dong_2015_half_period_ratio, sine_stick_slip_ratio
 from sonolube.models.friction.models.range_check import CheckedRatio
@@ -22,6 +22,7 @@ from sonolube.rig.friction_and_wear import (
     decay_length_caveat,
     direction_caveats,
     friction_at_speeds,
+    input_caveats,
     mean_over_time,
     mean_wear,
     prescribed_sine,
@@ -330,3 +331,21 @@ def test_what_a_model_leaves_out_of_a_direction_is_said_by_name() -> None:
     assert line.endswith("take friction.model asperity_stick_slip")
     assert direction_caveats(resolved_rig(STATED)) == ()
     assert np.isclose(friction_point(coulomb).friction_ratio, 1.0)
+
+
+def test_friction_beyond_that_of_hard_bodies_in_air_and_a_roughness_of_the_size_of_the_body_are_said() -> None:
+    rig = read_rig(RIGS / "tribometer.toml")  # radius of 2.25 mm2: 0.846 mm, of which a twentieth is 42 um
+    assert input_caveats(replace(rig, friction_coefficient=2.0)) == ()
+    (friction,) = input_caveats(replace(rig, friction_coefficient=3.0))
+    assert friction.startswith("a coefficient of friction of 3 without vibration is above 2")
+    assert friction in friction_point(replace(rig, friction_coefficient=3.0)).caveats
+    assert input_caveats(rig.replace("contact.roughness.rms_height", "42 um")) == ()
+    (rough,) = input_caveats(rig.replace("contact.roughness.rms_height", "63 um"))
+    assert rough.startswith("the rms height of 63 um is 0.074 of the radius 846 um of the nominal area")
+
+
+def test_a_load_that_leaves_no_separation_names_its_pressure_beside_the_hardness() -> None:
+    # 100 kN over 2.25 mm2 are 44.4 GPa, three times 410 MPa 1.23 GPa
+    rig = replace(read_rig(RIGS / "tribometer.toml"), normal_load=1e5)
+    with raises(OutsideRange, match=r"44\.4 GPa over 2\.25 mm2 are above the hardness of the softer body, about 1\.23"):
+        friction_point(rig)

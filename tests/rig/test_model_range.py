@@ -26,8 +26,11 @@ from sonolube.rig import (
     temperature_point,
     thermal_solid,
     voltage_study,
+    wear_point,
 )
 from sonolube.rig.responses import simulation_arrays
+from sonolube.rig.simulation import _raised_wear
+from sonolube.tasks.predict.new import new
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
 TRIBOMETER = read_rig(RIGS / "tribometer.toml")
@@ -50,6 +53,33 @@ def test_friction_above_mu_times_the_load_has_a_status_and_no_number() -> None:
     assert all(np.isnan(getattr(point, name)) for name in FRICTION)
     assert point.raw_friction_ratio > 1
     assert point.intrinsic_friction_force == approx(0.341 * 3)
+
+
+def test_where_friction_has_no_ratio_wear_has_none_for_the_same_reason() -> None:
+    rig = printed("sliding.sliding_speed=1m/s")  # within the range of the wear model
+    friction, wear = friction_point(rig), wear_point(rig, model="dong_2015_half_period")
+    assert (wear.status, wear.reason) == (OUTSIDE, friction.reason)
+    assert wear.wear_model != friction.friction_model
+    assert all(np.isnan(getattr(wear, name)) for name in ("wear_rate", "wear_rate_ratio", "wear_reduction"))
+    assert wear.raw_wear_rate_ratio > 0
+
+
+def test_an_amplitude_beyond_the_heights_of_the_contact_gives_wear_the_status_of_friction() -> None:
+    # exponential heights of 30 nm, over which the force rises by more than a float holds at 25 um closer
+    known = new(pin="m50", disc="m50", load="5N", speed="0.2m/s", frequency="20kHz", amplitude="50um").rig
+    rig = replace(known, contact=replace(known.contact, decay_length=30e-9))
+    friction, wear = friction_point(rig), wear_point(rig)
+    assert friction.status == wear.status == OUTSIDE
+    assert "separation must lie between" in (wear.reason or "")
+    assert wear.intrinsic_wear_rate > 0
+    assert np.isnan(wear.wear_rate_ratio)
+
+
+def test_a_wear_ratio_above_one_is_said_and_one_of_one_is_not() -> None:
+    assert _raised_wear(1.0) == ()
+    (line,) = _raised_wear(1.5)
+    assert line.startswith("wear ratio 1.5 is above 1: by this model the vibration raises wear")
+    assert "0.27 to 1.0" in line  # M50 on itself, and steel on titanium: D Tables 2.14
 
 
 def test_friction_within_the_range_keeps_its_number() -> None:

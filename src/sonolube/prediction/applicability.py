@@ -9,15 +9,22 @@ from typing import Final
 import numpy as np
 
 from sonolube.errors import InvalidInput, MissingProperty, SonolubeError
-from sonolube.models.thermal import EllipticSource, contact_rise
-from sonolube.prediction.bodies import named_bodies
-from sonolube.prediction.evidence import published_rigs
+from sonolube.models.thermal import EllipticSource, ThermalSolid, contact_rise
+from sonolube.prediction.bodies import named_bodies, softer_hardness
+from sonolube.prediction.evidence import REFERENCE_DECAY_LENGTH, Conditions, published_rigs
 from sonolube.prediction.hierarchy import central_interval
 from sonolube.prediction.inputs import RigInputs, rig_inputs, within_plane_refusal
 from sonolube.prediction.posterior import learned
 from sonolube.prediction.predictive import DRAWS, ratio_draws
-from sonolube.prediction.within_plane import is_predicted, plane_caveats, plane_extrapolation, plane_posterior
+from sonolube.prediction.within_plane import (
+    is_predicted,
+    plane_caveats,
+    plane_extrapolation,
+    plane_posterior,
+    within_plane,
+)
 from sonolube.rig import ResolvedRig, Rig, thermal_solid
+from sonolube.rig.contact_temperature import spot_rise
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.text.units import format_si
 from sonolube.validation.published_tests import friction_tests
@@ -36,6 +43,7 @@ _METALS: Final = frozenset(
     }
 )
 _MIN_DRY_FRICTION: Final = 0.15  # coefficient of metals on metals in air
+_FAR_ROUGHER: Final = 5.0  # times the roughest published contact
 _MARGIN: Final = 1.05  # beyond the ends of a range
 
 
@@ -49,6 +57,8 @@ class Applicability:
         One line with reason and remedy, where there is no prediction.
     caveats : tuple of str
         One line each.
+    beyond_tests : tuple of str
+        Those caveats that name what no published test is like.
     any_ratio : bool
         Whether friction may fall by anything from 0 to 100 %, for all that is known.
     """
@@ -56,6 +66,7 @@ class Applicability:
     refusal: str | None
     caveats: tuple[str, ...]
     any_ratio: bool
+    beyond_tests: tuple[str, ...] = ()
 
 
 def applicability(rig: Rig, *, lubricant: bool = False) -> Applicability:
@@ -63,15 +74,17 @@ def applicability(rig: Rig, *, lubricant: bool = False) -> Applicability:
 
     Refused are a vibration along the normal and within the plane at once, and soft bodies: polymers, rubber, felt,
     skin, foam, an effective modulus below 10 GPa where not both materials are named, or a friction model of soft
-    bodies. A coefficient of friction below 0.15 of metals, or of hard bodies without names, counts as that of a
-    lubricated contact.
+    bodies, and a nominal pressure above the hardness of the softer body. A coefficient of friction below 0.15 of
+    metals, or of hard bodies without names, counts as that of a lubricated contact.
     """
     lubricated = _lubrication(rig, lubricant=lubricant)
+    beyond = (*lubricated, *_frequency(rig), *_roughness(rig))
     tested = plane_caveats(rig.direction) if is_predicted(rig.direction) else ()
     return Applicability(
-        refusal=_in_plane(rig) or _soft(rig),
-        caveats=(*tested, *lubricated, *_frequency(rig)),
+        refusal=_in_plane(rig) or _soft(rig) or _crushed(rig),
+        caveats=(*tested, *beyond),
         any_ratio=bool(lubricated),
+        beyond_tests=beyond,
     )
 
 
@@ -104,6 +117,30 @@ def _soft(rig: Rig) -> str | None:
     return (
         f"{rig.title}: {why}, and all published tests behind a prediction are of hard bodies; use sonolube friction,"
         " whose models soft_layer and squeeze_film are theory alone"
+    )
+
+
+def _crushed(rig: Rig) -> str | None:
+    """Refusal of a nominal pressure that the softer body cannot bear."""
+    pressure, hardness = rig.normal_load / rig.contact.nominal_area, softer_hardness(rig)
+    if isinstance(hardness, str) or pressure <= hardness:
+        return None
+    return (
+        f"{rig.title}: a load of {format_si(rig.normal_load, 'N')} over {format_si(rig.contact.nominal_area, 'm2')} is"
+        f" {format_si(pressure, 'Pa')}, above the hardness {format_si(hardness, 'Pa')} of the softer body,"
+        " which cannot bear it; lower the load or enlarge contact.nominal_area"
+    )
+
+
+def _roughness(rig: Rig) -> tuple[str, ...]:
+    """Caveat of a roughness far above that of the published tests."""
+    height = rig.contact.roughness.rms_height
+    highest = max(test.contact.roughness.rms_height for test in friction_tests())
+    if height <= _FAR_ROUGHER * highest:
+        return ()
+    return (
+        f"the rms height of {format_si(height, 'm')} is far above the {format_si(highest, 'm')} of the published tests,"
+        " whose worn contacts tell little of it",
     )
 
 
@@ -144,35 +181,79 @@ def extrapolation_caveats(rig: Rig, inputs: RigInputs) -> tuple[str, ...]:
     """
     if not rig.direction.is_normal:
         return plane_extrapolation(inputs.at().conditions)
-    outside = [
-        f"{label} {format_si(value, unit)} ({format_si(low, unit)} to {format_si(high, unit)})"
-        for label, value, unit, tested in _conditions(rig, inputs)
-        for low, high in [(float(np.min(tested)), float(np.max(tested)))]
-        if not low / _MARGIN <= value <= high * _MARGIN
-    ]
+    return tested_range_caveats(rig, vibration_amplitude=inputs.amplitude.value)
+
+
+def tested_range_caveats(rig: Rig, *, vibration_amplitude: float) -> tuple[str, ...]:
+    """Sentence that names the conditions of a rig at an amplitude that lie outside the published tests."""
+    if not rig.direction.is_normal:
+        return _plane_range_caveats(rig, vibration_amplitude)
+    outside = untested_conditions(rig, vibration_amplitude=vibration_amplitude)
     if not outside:
         return ()
     return (f"outside the range of the published tests, so that the prediction extrapolates: {'; '.join(outside)}",)
 
 
-def _conditions(rig: Rig, inputs: RigInputs) -> list[tuple[str, float, str, np.ndarray]]:
+def untested_conditions(rig: Rig, *, vibration_amplitude: float) -> tuple[str, ...]:
+    """Conditions of a rig at an amplitude outside the published tests along the normal, each with their range."""
+    return tuple(
+        f"{label} {format_si(value, unit)} ({format_si(low, unit)} to {format_si(high, unit)})"
+        for label, value, unit, tested in _conditions(rig, vibration_amplitude)
+        for low, high in [(float(np.min(tested)), float(np.max(tested)))]
+        if not low / _MARGIN <= value <= high * _MARGIN
+    )
+
+
+def _plane_range_caveats(rig: Rig, vibration_amplitude: float) -> tuple[str, ...]:
+    """Sentence on conditions of a vibration within the plane outside the published points."""
+    if rig.drive is None or not (rig.sliding_speed > 0 and is_predicted(rig.direction)):
+        return ()
+    conditions = Conditions(
+        vibration_amplitude=np.array([vibration_amplitude]),
+        frequency=np.array([rig.drive.frequency]),
+        sliding_speed=np.array([rig.sliding_speed]),
+        decay_length=np.array([REFERENCE_DECAY_LENGTH]),
+    )
+    return plane_extrapolation(within_plane(conditions, rig.direction))
+
+
+def _conditions(rig: Rig, vibration_amplitude: float) -> list[tuple[str, float, str, np.ndarray]]:
     """Label, value, unit and tested values of each condition."""
     tested = [each.at.conditions for each in published_rigs()]
     moduli = [test.contact.pair.effective_modulus for test in friction_tests()]
     return [
         (
             "vibration amplitude",
-            inputs.amplitude.value,
+            vibration_amplitude,
             "m",
             np.concatenate([each.vibration_amplitude for each in tested]),
         ),
-        ("sliding speed", inputs.sliding_speed, "m/s", np.concatenate([each.sliding_speed for each in tested])),
+        ("sliding speed", rig.sliding_speed, "m/s", np.concatenate([each.sliding_speed for each in tested])),
         ("effective modulus", rig.contact.pair.effective_modulus, "Pa", np.array(moduli)),
     ]
 
 
 def contact_heating(rig: Rig, pin: str | None, disc: str | None) -> float | str:
     """Mean temperature rise of the contact, taken as circular, for a watt of friction, in K/W; or why it is unknown."""
+    solids = _thermal_solids(rig, pin, disc)
+    if isinstance(solids, str):
+        return solids
+    radius = float(np.sqrt(rig.contact.nominal_area / np.pi))
+    source = EllipticSource(half_length=radius, half_width=radius)
+    rise = contact_rise(*solids, source, heat_rate=1.0, sliding_speed=rig.sliding_speed)
+    return float(rise.mean_temperature_rise)
+
+
+def spot_heating(rig: Rig, pin: str | None, disc: str | None) -> float | str:
+    """Flash temperature rise of one real spot under the load for a watt of friction, in K/W; or why it is unknown."""
+    solids, hardness = _thermal_solids(rig, pin, disc), softer_hardness(rig, pin, disc)
+    if isinstance(solids, str) or isinstance(hardness, str):
+        return solids if isinstance(solids, str) else hardness
+    return float(spot_rise(*solids, rig, hardness=hardness, heat_rate=1.0))
+
+
+def _thermal_solids(rig: Rig, pin: str | None, disc: str | None) -> tuple[ThermalSolid, ThermalSolid] | str:
+    """Thermal properties of pin and disc, or why they are unknown."""
     named = pin is not None or disc is not None
     pin, disc = pin or rig.pin_material, disc or rig.disc_material
     if pin is None or disc is None:
@@ -180,15 +261,11 @@ def contact_heating(rig: Rig, pin: str | None, disc: str | None) -> float | str:
             raise InvalidInput("the temperature rise needs both materials; give pin and disc, or neither")
         return "name the materials of pin and disc"
     try:
-        solids = thermal_solid(pin), thermal_solid(disc)
+        return thermal_solid(pin), thermal_solid(disc)
     except MissingProperty as missing:
         if named:
             raise
         return str(missing)
-    radius = float(np.sqrt(rig.contact.nominal_area / np.pi))
-    source = EllipticSource(half_length=radius, half_width=radius)
-    rise = contact_rise(*solids, source, heat_rate=1.0, sliding_speed=rig.sliding_speed)
-    return float(rise.mean_temperature_rise)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -2,20 +2,19 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import isfinite
 from typing import Any, Final
 
 import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.facts.materials import material
+from sonolube.facts.materials import TABOR_FACTOR, material
 from sonolube.prediction.hierarchy import central_interval
 from sonolube.prediction.wear import published_pair, published_wear
 from sonolube.rig import Rig
 from sonolube.rig.file.entries import FROM_HARDNESS
 from sonolube.text.units import format_si, to_si
-
-_TABOR_FACTOR: Final = 3.0  # hardness over yield strength
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -83,10 +82,30 @@ def _body(name: str, *, strength: str | float | None = None, is_measured: bool =
     hardness = own.value if own is not None and not is_measured else None
     is_estimated = hardness is None and not is_measured
     if hardness is None and stated is not None:
-        hardness = _TABOR_FACTOR * stated
+        hardness = TABOR_FACTOR * stated
     return NamedBody(
         name=known.name, title=known.title, family=known.family, hardness=hardness, is_estimated=is_estimated
     )
+
+
+def softer_hardness(rig: Rig, pin: str | None = None, disc: str | None = None) -> float | str:
+    """Indentation hardness of the softer body of a rig, in Pa; or why it is not known.
+
+    Of the materials given in place of the rig's, else of its named bodies; of a rig without names three times its yield
+    strength.
+    """
+    own = {body.name: body for body in named_bodies(rig)}
+    names = [name for name in (pin or rig.pin_material, disc or rig.disc_material) if name is not None]
+    bodies = [own.get(body.name, body) for name in names if (body := _body(name))] or list(own.values())
+    unknown = [body.title for body in bodies if body.hardness is None]
+    if unknown:
+        return f"no source states the hardness of {unknown[0]}; give contact.softer.hardness"
+    if bodies:
+        return min(body.hardness for body in bodies if body.hardness is not None)
+    strength = rig.contact.pair.yield_strength
+    if not isfinite(strength):
+        return "the bodies do not yield; give the hardness of the softer one"
+    return TABOR_FACTOR * strength
 
 
 _NEAR_TIE: Final = 1.25  # ratio of hardnesses below which temper and hardening by work decide

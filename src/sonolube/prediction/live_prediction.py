@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.models.dynamics import Structure
-from sonolube.prediction.applicability import Applicability, applicability, contact_heating
+from sonolube.prediction.applicability import Applicability, applicability, contact_heating, spot_heating
 from sonolube.prediction.bodies import pair_of
+from sonolube.prediction.evidence import Conditions
 from sonolube.prediction.evidence_posterior import EvidencePosterior, read_evidence_posterior
 from sonolube.prediction.further_measurements import (
     KNOWN_WELL,
@@ -29,7 +30,7 @@ from sonolube.prediction.hierarchy import LEVELS, sorted_quantiles
 from sonolube.prediction.inputs import Input, OwnRuns, RigInputs, decay_length_of, own_runs, rig_inputs
 from sonolube.prediction.posterior import Posterior, learned
 from sonolube.prediction.predictive import DRAWS, Laboratory, RigPrediction, laboratory, rig_prediction
-from sonolube.prediction.rig_statement import prediction_attributes, statement, wear_sentence
+from sonolube.prediction.rig_statement import heat_words, prediction_attributes, statement, wear_sentence
 from sonolube.prediction.wear import vibration_weight
 from sonolube.prediction.within_plane import NO_HEAT, plane_posterior
 from sonolube.rig import Rig
@@ -38,6 +39,9 @@ from sonolube.rig.vibration_direction import VibrationDirection
 
 if TYPE_CHECKING:
     import xarray as xr
+
+Heating: TypeAlias = "tuple[float | str, float | str]"
+"""Rises of the nominal face and of a real spot for a watt of friction, in K/W, each or why it is unknown."""
 
 _CURVE: Final = 33  # points of a curve, the operating point in the middle
 _FARTHEST: Final = 6.0  # point of a curve over the operating point
@@ -146,11 +150,16 @@ class LivePrediction:
         own = None if self._runs is None else own_runs(self._runs, inputs, title=rig.title)
         if own is not None and own.friction is not None:
             inputs = inputs.with_input(own.friction)
-        heating = contact_heating(rig, *self._materials)
-        return self._arrays(rig, inputs, own, limits, heating if inputs.direction.is_normal else NO_HEAT)
+        heating = self._heating(rig)
+        return self._arrays(rig, inputs, own, limits, heating)
+
+    def _heating(self, rig: Rig) -> Heating:
+        """Rises of the contact of a rig for a watt of friction."""
+        face, spot = (of(rig, *self._materials) for of in (contact_heating, spot_heating))
+        return (face, spot) if rig.direction.is_normal else (NO_HEAT, NO_HEAT)
 
     def _arrays(
-        self, rig: Rig, inputs: RigInputs, own: OwnRuns | None, limits: Applicability, heating: float | str
+        self, rig: Rig, inputs: RigInputs, own: OwnRuns | None, limits: Applicability, heating: Heating
     ) -> LabelledArrays:
         """Labelled arrays of all that is predicted."""
         found = self._prediction(inputs, own)
@@ -163,8 +172,9 @@ class LivePrediction:
         ratio = curves["amplitude"][:, _CURVE // 2]
         intrinsic = self._intrinsic(inputs.friction)
         drawn = _frictional(ratio, intrinsic, rig, heating)
-        if inputs.direction.is_normal:
-            drawn |= self._wear(rig, found, own, ratio)
+        wear_is_known = inputs.direction.is_normal and not (limits.any_ratio and not _states_wear(own))
+        if wear_is_known:
+            drawn |= self._wear(rig, found, own, inputs)
         uncertain = sorted(inputs.uncertain, key=lambda each: -each.spread)
         logs = own_logarithms(found, intrinsic=intrinsic, seed=self._seed)
         probes = () if inputs.measured_length else _told_probes(rig, inputs, self._population)
@@ -197,8 +207,13 @@ class LivePrediction:
             attrs=prediction_attributes(rig, inputs, own, found, limits, self._laboratory, self._evidence)
             | {
                 "stiffness_probes": "" if inputs.measured_length else "\n".join(probe_sentences(probes)),
-                "heat": heating if isinstance(heating, str) else "",
-                "wear": wear_sentence(rig, ratios=drawn.get("wear_rate_ratio"), contradicted=_contradicted(found)),
+                "heat": heat_words(rig, *self._materials, drawn, heating),
+                "wear": wear_sentence(
+                    rig,
+                    ratios=drawn.get("wear_rate_ratio"),
+                    contradicted=_contradicted(found),
+                    is_lubricated=limits.any_ratio,
+                ),
             },
         )
         return result.assign_attrs(statement="\n".join(statement(result)))
@@ -230,25 +245,29 @@ class LivePrediction:
         normals = np.random.default_rng(self._seed + 1).standard_normal(self._draws)
         return np.asarray(friction.value * np.exp(friction.spread * normals))
 
-    def _wear(self, rig: Rig, found: RigPrediction, own: OwnRuns | None, ratio: Floats) -> dict[str, Floats]:
-        """Draws of the wear rate ratio and reduction."""
-        measured, tested_weight = np.empty(0), np.ones(ratio.size)
-        weight = vibration_weight(friction_ratio=ratio, seed=self._seed)
+    def _wear(self, rig: Rig, found: RigPrediction, own: OwnRuns | None, inputs: RigInputs) -> dict[str, Floats]:
+        """Draws of the wear rate ratio and reduction, by the reduction that the friction model itself gives."""
+        count = self._draws
+        measured, tested_weight = np.empty(0), np.ones(count)
+        weight = self._weight(found, inputs.at().conditions)[:, 0]
         if _contradicted(found):  # of which friction does not tell
-            weight = np.random.default_rng(self._seed + 2).random(ratio.size)
+            weight = np.random.default_rng(self._seed + 2).random(count)
         if own is not None and own.wear_rate_ratio.size:
             measured = own.wear_rate_ratio
-            tested = found.ratios(own.tested.at.conditions.taken(own.wear_runs))
-            tested_weight = vibration_weight(friction_ratio=tested, seed=self._seed).mean(axis=1)
+            tested_weight = self._weight(found, own.tested.at.conditions.taken(own.wear_runs)).mean(axis=1)
         wear = learned().wear.wear_rate_ratios(
-            ratio.size,
-            measured=measured,
-            weight=weight,
-            measured_weight=tested_weight,
-            pair=pair_of(rig),
-            seed=self._seed,
+            count, measured=measured, weight=weight, measured_weight=tested_weight, pair=pair_of(rig), seed=self._seed
         )
         return {"wear_rate_ratio": wear, "wear_reduction": 1 - wear}
+
+    def _weight(self, found: RigPrediction, at: Conditions) -> Floats:
+        """Draws of the share of the effect of the published wear tests at conditions, shape (draws, m).
+
+        By the mean of the friction model: its discrepancy is an error of that model, and no friction that wear follows.
+        """
+        means = found.draws.means(at)
+        rows = np.arange(self._draws) % len(means)
+        return vibration_weight(friction_ratio=means[rows], seed=self._seed)
 
 
 def predict(
@@ -274,13 +293,14 @@ def predict(
     Returns
     -------
     xarray.Dataset
-        Over `draw`: friction ratio, reduction, force and coefficient, wear rate ratio and reduction, and the mean
-        temperature rise of the contact where both materials are given. Over `level`: quantiles of the friction ratio
-        along `curve_amplitude` and `curve_speed`, with the operating point in their middle. Over `input`, the least
-        known first: spread of each uncertain input, and the shares of the 80 % intervals of friction ratio and friction
-        force that would be left if it were known well. Over `measure`: measurements that would narrow the interval, and
-        what each would leave of it. Attributes hold caveats, assumptions, and the statement in words. Neither wear nor
-        temperature rise is predicted of a vibration within the plane.
+        Over `draw`: friction ratio, reduction, force and coefficient, wear rate ratio and reduction where the contact
+        is dry, and the mean temperature rise of the contact and that of a real spot where both materials are given.
+        Over `level`: quantiles of the friction ratio along `curve_amplitude` and `curve_speed`, with the operating
+        point in their middle. Over `input`, the least known first: spread of each uncertain input, and the shares of
+        the 80 % intervals of friction ratio and friction force that would be left if it were known well. Over
+        `measure`: measurements that would narrow the interval, and what each would leave of it. Attributes hold
+        caveats, assumptions, and the statement in words. Neither wear nor temperature rise is predicted of a
+        vibration within the plane.
 
     Raises
     ------
@@ -332,7 +352,7 @@ def _laboratory(population: Posterior, rigs_with_runs: "Sequence[tuple[Rig, xr.D
     return laboratory(population, tested, seed=seed)
 
 
-def _frictional(ratio: Floats, intrinsic: Floats, rig: Rig, heating: float | str) -> dict[str, Floats]:
+def _frictional(ratio: Floats, intrinsic: Floats, rig: Rig, heating: Heating) -> dict[str, Floats]:
     """Draws of all quantities that follow from the friction ratio."""
     found = {
         "friction_ratio": ratio,
@@ -340,8 +360,9 @@ def _frictional(ratio: Floats, intrinsic: Floats, rig: Rig, heating: float | str
         "friction_coefficient": ratio * intrinsic,
         "friction_force": ratio * intrinsic * rig.normal_load,
     }
-    if not isinstance(heating, str):
-        found["mean_temperature_rise"] = heating * found["friction_force"] * rig.sliding_speed
+    for name, rise in zip(("mean_temperature_rise", "spot_temperature_rise"), heating, strict=True):
+        if not isinstance(rise, str):
+            found[name] = rise * found["friction_force"] * rig.sliding_speed
     return found
 
 
@@ -407,6 +428,11 @@ def _measures(better: Sequence[Measure]) -> dict[str, NDArray[Any]]:
 def _along(name: str, values: Mapping[str, NDArray[Any]]) -> dict[str, LabelledArray]:
     """Arrays over one axis."""
     return {each: LabelledArray(dims=(name,), values=array) for each, array in values.items()}
+
+
+def _states_wear(own: OwnRuns | None) -> bool:
+    """Whether own runs state wear."""
+    return own is not None and bool(own.wear_rate_ratio.size)
 
 
 def _contradicted(found: RigPrediction) -> bool:

@@ -1,5 +1,6 @@
 """Prediction of a rig in words: its outcome, what to measure, what limits it, and its caveats."""
 
+from collections.abc import Mapping
 from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
@@ -7,13 +8,15 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.prediction.applicability import NORMAL_VIBRATION, Applicability, extrapolation_caveats
-from sonolube.prediction.bodies import pair_of, wear_statement, worn_body
+from sonolube.prediction.bodies import pair_of, softer_hardness, wear_statement, worn_body
 from sonolube.prediction.evidence_posterior import EvidencePosterior
 from sonolube.prediction.hierarchy import PROBABILITIES, central_interval, sorted_quantiles
 from sonolube.prediction.inputs import OwnRuns, RigInputs
 from sonolube.prediction.predictive import Laboratory, RigPrediction, RunCheck
+from sonolube.prediction.verdict import point_verdict
 from sonolube.prediction.within_plane import NO_WEAR, RIGID_MODEL, tested_words
 from sonolube.rig import Rig
+from sonolube.rig.contact_temperature import heat_sentence
 from sonolube.rig.datasets import LabelledArray, LabelledArrays
 from sonolube.rig.friction_and_wear import direction_caveats
 from sonolube.rig.power import POWERS, power_text
@@ -22,7 +25,12 @@ from sonolube.rig.resolved_rig import resolved_rig
 if TYPE_CHECKING:
     import xarray as xr
 
-_HOT: Final = 50.0  # K, mean rise of the contact from which metals soften or lubricants change
+WEAR_OF_LUBRICATED: Final = (
+    "What vibration does to wear is not known of a lubricated contact: all published wear tests with vibration are of"
+    " dry ones; measure it."
+)
+"""Sentence in place of wear under a lubricant."""
+
 _NONE: Final = 0.5  # percent of friction, below which a change is none
 
 
@@ -99,12 +107,16 @@ def prediction_attributes(
         caveats += [*_outlier_caveats(found.check, own), *own.caveats]
         if own.wear_rate_ratio.size and not rig.direction.is_normal:
             caveats.append("the wear that the runs state is left out: no prediction of wear is of this direction")
+    contradiction = "" if own is None else _contradiction(found.check, own)
+    verdict = point_verdict(rig, friction=point, lubricant=limits.any_ratio, contradiction=contradiction)
     attributes: dict[str, object] = {
         "result": "prediction",
         "title": rig.title,
         "caveats": "\n".join(caveats),
         "assumptions": "\n".join(f"{key}: {reason}" for key, reason in rig.assumptions.items()),
-        "contradiction": "" if own is None else _contradiction(found.check, own),
+        "contradiction": contradiction,
+        "verdict": str(verdict.verdict),
+        "verdict_reasons": "\n".join(verdict.reasons),
         "unknown": int(limits.any_ratio and own is None),
         "friction_law": found.draws.posterior.closure.name,
         "vibration_amplitude": inputs.amplitude.value,
@@ -162,17 +174,29 @@ def _advice(prediction: "xr.Dataset | LabelledArrays") -> str:
 
 def _limits(prediction: "xr.Dataset | LabelledArrays") -> str:
     """Sentence on heat and power."""
-    parts = []
-    if "mean_temperature_rise" in prediction:
-        high = interval(prediction, "mean_temperature_rise")[1]
-        parts.append(f"Heat of friction {'limits' if high > _HOT else 'does not limit'}: at most {high:.2g} K (80 %)")
-    else:
-        parts.append(f"Heat is not computed: {prediction.attrs['heat']}")
+    parts = [prediction.attrs["heat"]]
     power = prediction.attrs.get("power_to_supply")
     unknown = "power is not known: capacitance or voltage is missing"
     supplied = "" if power is None else power_text(power, is_at_least=bool(prediction.attrs["power_is_at_least"]))
     parts.append(f"the amplifier has to supply {supplied}" if supplied else unknown)
     return "; ".join(parts) + "."
+
+
+def heat_words(
+    rig: Rig, pin: str | None, disc: str | None, drawn: Mapping[str, Floats], heating: tuple[float | str, float | str]
+) -> str:
+    """Whether heat limits a rig, by the upper ends of the 80 % intervals of its rises; or why that is not known."""
+    face, spot = heating
+    if isinstance(face, str):
+        return f"Heat is not computed: {face}"
+    highest = central_interval(drawn["mean_temperature_rise"], 0.8)[1]
+    return heat_sentence(
+        rig,
+        mean_temperature_rise=float(highest),
+        spot_temperature_rise=None if isinstance(spot, str) else float(highest) * spot / face,
+        hardness=softer_hardness(rig, pin, disc),
+        of="at most (80 %) ",
+    )
 
 
 def _contradiction(check: RunCheck | None, own: OwnRuns) -> str:
@@ -201,8 +225,10 @@ def _outlier_caveats(check: RunCheck | None, own: OwnRuns) -> list[str]:
     ]
 
 
-def wear_sentence(rig: Rig, *, ratios: Floats | None, contradicted: bool) -> str:
+def wear_sentence(rig: Rig, *, ratios: Floats | None, contradicted: bool, is_lubricated: bool = False) -> str:
     """Change of the wear rate in words, with the body that wears; why it is unknown where there are no ratios."""
+    if ratios is None and is_lubricated and rig.direction.is_normal:
+        return WEAR_OF_LUBRICATED
     if ratios is None:
         return NO_WEAR
     if contradicted:

@@ -4,12 +4,12 @@ A pair of materials has the wear rate ratio exp(x) under the vibrations of the p
 
     ln ratio = w x,    w = u / (u + k (1 - u)),    u = (1 - R) / (1 - R_t) from 0 to 1,
 
-with the friction ratio R there and R_t the largest of those tests. Without an effect on friction (R = 1) wear is that
-without vibration; from the smallest friction reduction of the tests on, w is 1: between reductions of 29 and 63 % on
-one pair the wear reduction stayed between 46 and 49 % (D Table 2.5). In between nothing was measured. ln k is normal
-about 0, so that w is uncertain by a factor where it is small and known at both ends. Its deviation is the difference
-between two views of that gap: wear that follows the friction, and wear by the separating half period (D 3.28), which
-depends on the amplitude alone.
+with the friction ratio R there, by the mean of the friction model, and R_t the largest of those tests. Without an
+effect on friction (R = 1) wear is that without vibration; from the smallest friction reduction of the tests on, w is
+1: between reductions of 29 and 63 % on one pair the wear reduction stayed between 46 and 49 % (D Table 2.5). In
+between nothing was measured. ln k is normal about 0, so that w is uncertain by a factor where it is small and known
+at both ends. Its deviation is the difference between two views of that gap: wear that follows the friction, and wear
+by the separating half period (D 3.28), which depends on the amplitude alone.
 """
 
 import tomllib

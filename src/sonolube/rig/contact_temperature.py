@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import partial
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,6 +18,17 @@ from sonolube.rig.record import Rig
 from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
 from sonolube.rig.simulation import vibrated_friction
 from sonolube.rig.vibration import steady_vibration
+from sonolube.text.units import format_si
+
+MAX_FACE_RISE: Final = 50.0
+"""Mean rise of the nominal face from which a test changes: films on metals, lubricants and clearances do. [K]"""
+
+MAX_SPOT_RISE: Final = 500.0
+"""Flash temperature rise of a real spot from which the metal itself changes. [K]
+
+Steel at about 800 K oxidises and has lost half of its strength, aluminium is near its melting point; mild wear of
+steel turns oxidational at flash temperatures of some 1000 K (S. C. Lim, M. F. Ashby, Acta Metall. 35, 1 (1987),
+doi:10.1016/0001-6160(87)90209-4)."""
 
 _STEPS = 200
 
@@ -39,6 +51,8 @@ class TemperaturePoint:
         Highest rise of the contact over the bulk of the pin. [K]
     mean_temperature_rise : float
         Mean rise of the contact over the bulk of the pin. [K]
+    spot_temperature_rise : float or None
+        Mean flash rise of one real spot that carries the load by the hardness; None where that is not known. [K]
     temperature_rise : float
         Mean rise of the contact over its surroundings at the end of the test. [K]
     temperature_rise_ratio : float
@@ -53,6 +67,8 @@ class TemperaturePoint:
         Where the amplitude comes from.
     amplitude_origin : str
         The same in words, with the numbers behind it.
+    heat : str
+        Whether heat of friction limits the test, with the rises of the nominal face and of a real spot.
     caveats : tuple of str
         What speaks against trusting the numbers, each in one line.
     with_vibration, without_vibration : ContactTemperatureHistory
@@ -65,6 +81,7 @@ class TemperaturePoint:
     peclet_number: float
     peak_temperature_rise: float
     mean_temperature_rise: float
+    spot_temperature_rise: float | None
     temperature_rise: float
     temperature_rise_ratio: float
     friction_ratio: float
@@ -72,6 +89,7 @@ class TemperaturePoint:
     vibration_amplitude: float
     amplitude_source: str
     amplitude_origin: str
+    heat: str
     caveats: tuple[str, ...]
     with_vibration: contact_history.ContactTemperatureHistory
     without_vibration: contact_history.ContactTemperatureHistory
@@ -95,6 +113,80 @@ def thermal_solid(name: str) -> thermal.ThermalSolid:
     )
 
 
+def spot_rise(
+    pin: thermal.ThermalSolid,
+    disc: thermal.ThermalSolid,
+    rig: Rig,
+    *,
+    hardness: float,
+    heat_rate: ArrayLike,
+    moving_rise: thermal.MovingRise = thermal.flash_rise,
+) -> Floats:
+    """Mean flash temperature rise of one real spot that carries the load of a rig. [K]
+
+    Parameters
+    ----------
+    pin, disc : ThermalSolid
+        Body that the spot is fixed to, and that which it moves over.
+    rig : Rig
+    hardness : float
+        Indentation hardness of the softer body. [Pa]
+    heat_rate : array_like, any shape
+        Heat generated in the contact. [W]
+    moving_rise : MovingRise
+        Model of the rise of the moving body.
+
+    Returns
+    -------
+    ndarray, shape of `heat_rate`
+
+    Raises
+    ------
+    InvalidInput
+        If the hardness is not positive, or a heat is negative or not finite.
+
+    See Also
+    --------
+    sonolube.models.thermal.real_contact_spot : the spot.
+    """
+    spot = thermal.real_contact_spot(normal_load=rig.normal_load, hardness=hardness)
+    return thermal.contact_rise(
+        pin, disc, spot, heat_rate=heat_rate, sliding_speed=rig.sliding_speed, moving_rise=moving_rise
+    ).mean_temperature_rise
+
+
+def heat_sentence(
+    rig: Rig, *, mean_temperature_rise: float, spot_temperature_rise: float | None, hardness: float | str, of: str = ""
+) -> str:
+    """Whether heat of friction limits a contact, by the rises of its nominal face and of a real spot, in words.
+
+    Parameters
+    ----------
+    rig : Rig
+    mean_temperature_rise, spot_temperature_rise : float
+        Mean rises; None of a spot that is not known. [K]
+    hardness : float or str
+        Indentation hardness of the softer body, or why it is not known. [Pa]
+    of : str
+        What the rises are, such as "at most ".
+
+    Returns
+    -------
+    str
+    """
+    face, spot = mean_temperature_rise, spot_temperature_rise
+    limits = face > MAX_FACE_RISE or (spot is not None and spot > MAX_SPOT_RISE)
+    verb = "limits" if limits else "does not limit" if spot is not None else "does not limit the nominal face"
+    text = f"Heat of friction {verb}: {of}{format_si(face, 'K', digits=2)} in the mean over the nominal face"
+    if spot is None or isinstance(hardness, str):
+        return f"{text}; the flash temperature of real spots is not known: {hardness}"
+    radius = thermal.real_contact_spot(normal_load=rig.normal_load, hardness=hardness).half_length
+    return (
+        f"{text}, {format_si(spot, 'K', digits=2)} of flash temperature where one real spot of"
+        f" {format_si(radius, 'm', digits=2)} radius carries the load"
+    )
+
+
 def temperature_point(
     rig: Rig | ResolvedRig,
     *,
@@ -107,6 +199,7 @@ def temperature_point(
     vibration_heat_rate: ArrayLike = 0.0,
     friction_ratio: float | None = None,
     flash_model: str = "quadrature",
+    hardness: float | str = "it takes the hardness of the softer body",
 ) -> TemperaturePoint:
     """Temperature of the rig's contact, taken as circular, over a test from ambient temperature.
 
@@ -131,6 +224,8 @@ def temperature_point(
         Friction with vibration over that without, instead of that of the friction model. []
     flash_model : str
         Of `sonolube.models.thermal.flash.FLASH_MODELS`.
+    hardness : float or str
+        Indentation hardness of the softer body, by which a real spot carries the load; or why it is not known. [Pa]
 
     Returns
     -------
@@ -180,6 +275,14 @@ def temperature_point(
     shared = thermal.contact_rise(
         pin, disc, source, heat_rate=heat, sliding_speed=rig.sliding_speed, moving_rise=moving_rise
     )
+    on_spot = (
+        None
+        if isinstance(hardness, str)
+        else float(spot_rise(pin, disc, rig, hardness=hardness, heat_rate=heat, moving_rise=moving_rise))
+    )
+    judged = heat_sentence(
+        rig, mean_temperature_rise=float(shared.mean_temperature_rise), spot_temperature_rise=on_spot, hardness=hardness
+    )
     return TemperaturePoint(
         frictional_heat_rate=of_friction,
         vibration_heat_rate=float(levels[-1]),
@@ -187,11 +290,13 @@ def temperature_point(
         peclet_number=float(thermal.peclet_number(disc, source, sliding_speed=rig.sliding_speed)),
         peak_temperature_rise=float(shared.peak_temperature_rise),
         mean_temperature_rise=float(shared.mean_temperature_rise),
+        spot_temperature_rise=on_spot,
         temperature_rise=float(warmed.temperature_rise[-1]),
         temperature_rise_ratio=float(warmed.temperature_rise[-1] / without.temperature_rise[-1]),
         friction_ratio=ratio,
         friction_model=rig.friction_model.name if friction_ratio is None else "stated",
         **vibrated.origin,
+        heat=judged,
         caveats=(*vibrated.caveats, *_caveats(network, float(levels.max()))),
         with_vibration=warmed,
         without_vibration=without,
@@ -224,8 +329,8 @@ def _steps(duration: float, dry_duration: float, levels: Floats) -> tuple[Floats
 def _caveats(network: thermal.ThermalNetwork, vibration_heat_rate: float) -> tuple[str, ...]:
     (capacity,), (conductance,) = network.heat_capacity, network.losses
     known = (
-        "heat enters over the nominal area; flash temperatures of asperities are higher, for microseconds",
-        f"bulk of a pin of {capacity:g} J/K that loses {conductance:g} W/K, which the rig file does not hold",
+        "the figure is of heat over the nominal area",
+        f"bulk of a pin of {capacity:.4g} J/K that loses {conductance:.4g} W/K, which the rig file does not hold",
     )
     if vibration_heat_rate > 0:
         return known

@@ -331,7 +331,38 @@ def resting_caveats(resolved: ResolvedRig, *, vibration_amplitude: float | None 
     caveat = decay_length_caveat(resolved, vibration_amplitude=vibration_amplitude)
     d = resolved.separation
     own = contact_caveats(resolved.rig.contact, separation=d) if d > 0 else (PRESSED_LAYER,)
-    return (*own, *(() if caveat is None else (caveat,)))
+    return (*input_caveats(resolved.rig), *own, *(() if caveat is None else (caveat,)))
+
+
+_MAX_DRY_FRICTION: Final = 2.0  # coefficient of hard bodies in air; clean metals in a vacuum exceed it
+_MAX_RELATIVE_ROUGHNESS: Final = 0.05  # rms height over the radius of the nominal area
+
+
+def input_caveats(rig: Rig) -> tuple[str, ...]:
+    """Caveats of entries of a rig that hard dry bodies in air do not have."""
+    if rig.friction_model.for_soft_bodies:
+        return ()
+    friction, height = rig.friction_coefficient, rig.contact.roughness.rms_height
+    radius = float(np.sqrt(rig.contact.nominal_area / np.pi))
+    return (
+        *(
+            [
+                f"a coefficient of friction of {friction:.3g} without vibration is above {_MAX_DRY_FRICTION:g}, which"
+                " hard dry bodies do not reach in air: check force, load and zero of the force"
+            ]
+            if friction > _MAX_DRY_FRICTION
+            else []
+        ),
+        *(
+            [
+                f"the rms height of {format_si(height, 'm')} is {height / radius:.2g} of the radius"
+                f" {format_si(radius, 'm')} of the nominal area, too much for a mean over asperities: check"
+                " contact.roughness"
+            ]
+            if height > _MAX_RELATIVE_ROUGHNESS * radius
+            else []
+        ),
+    )
 
 
 def direction_caveats(resolved: ResolvedRig) -> tuple[str, ...]:

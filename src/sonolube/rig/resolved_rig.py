@@ -9,6 +9,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, OutsideRange, SonolubeError
+from sonolube.facts.materials import TABOR_FACTOR
 from sonolube.models.contact import ExponentialHeights, RoughContact
 from sonolube.models.contact.rough import decay_length, normal_force, normal_stiffness, separation, separation_range
 from sonolube.models.dynamics import ExponentialGap, GapLaw, StartUpRamp, TabulatedGap, contact_receptance
@@ -185,10 +186,21 @@ def rest_separation(rig: Rig) -> float:
     gap = float(separation(rig.contact, normal_load=rig.normal_load))
     if gap <= 0 and not isinstance(rig.friction_model, SoftLayerModel):
         raise OutsideRange(
-            f"contact.normal_load {rig.normal_load:g} N leaves no separation between the surfaces (d = {gap:.3g} m): "
-            "lower the load or enlarge contact.nominal_area"
+            f"contact.normal_load {rig.normal_load:g} N leaves no separation between the surfaces (d = {gap:.3g} m)"
+            f"{_crushing(rig)}: lower the load or enlarge contact.nominal_area"
         )
     return gap
+
+
+def _crushing(rig: Rig) -> str:
+    """Nominal pressure beside the hardness of the softer body, where that cannot bear it; else empty."""
+    pressure, hardness = rig.normal_load / rig.contact.nominal_area, TABOR_FACTOR * rig.contact.pair.yield_strength
+    if pressure <= hardness:
+        return ""
+    return (
+        f", and its {format_si(pressure, 'Pa')} over {format_si(rig.contact.nominal_area, 'm2')} are above the hardness"
+        f" of the softer body, about {format_si(hardness, 'Pa')}"
+    )
 
 
 def gap_law_of(contact: RoughContact) -> GapLaw:

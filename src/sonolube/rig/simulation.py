@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sonolube.errors import OutsideRange, SonolubeError
+from sonolube.errors import InvalidInput, OutsideRange, SonolubeError
 from sonolube.models.actuator import stack_caveats
 from sonolube.models.friction.models import FRICTION_MODELS, FrictionModel
 from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, ratio_caveats
@@ -27,6 +27,8 @@ from sonolube.rig.power import PowerToSupply, power_to_supply
 from sonolube.rig.record import Rig
 from sonolube.rig.resolved_rig import ResolvedRig, held_back_caveats, resolved_rig, source_caveats
 from sonolube.rig.vibration import SteadyVibration, steady_vibration
+
+_ROUNDED = 1e-6  # of a wear ratio
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -114,7 +116,7 @@ def simulate(rig: Rig | ResolvedRig) -> Simulation:
         reason=friction.reason or vibration.reason,
         vibration=vibration,
         friction=friction,
-        wear=_wear_point(resolved, vibration, wear_model_of(resolved.rig), friction.caveats, friction),
+        wear=_wear_point(resolved, vibration, wear_model_of(resolved.rig), friction.caveats, friction.reason),
         energy_balance=NO_DISSIPATED_POWER if friction.power is None else friction.power.energy_balance,
         caveats=friction.caveats,
     )
@@ -209,9 +211,14 @@ def wear_point(rig: Rig | ResolvedRig, *, model: str | None = None) -> WearPoint
     resolved = resolved_rig(rig).require_separation()
     name = wear_model_of(resolved.rig) if model is None else model
     WEAR_MODELS.named(name)
-    vibration = steady_vibration(resolved)
+    try:
+        vibration = steady_vibration(resolved)
+    except OutsideRange as refusal:
+        if resolved.vibration.driven is not None:
+            raise
+        return _withheld_wear(resolved, name, f"{OUTSIDE_MODEL_RANGE}: {refusal}")
     caveats = _caveats(resolved, vibration)
-    return _wear_point(resolved, vibration, name, caveats, None, is_chosen=model is not None)
+    return _wear_point(resolved, vibration, name, caveats, _outside_friction(resolved), is_chosen=model is not None)
 
 
 def vibrated_friction(rig: Rig | ResolvedRig, *, sliding_speed: ArrayLike) -> VibratedFriction:
@@ -284,10 +291,11 @@ def _wear_point(
     vibration: SteadyVibration,
     model: str,
     caveats: tuple[str, ...],
-    friction: FrictionPoint | None,
+    outside_friction: str | None,
     *,
     is_chosen: bool = False,
 ) -> WearPoint:
+    """Wear under a vibration, withheld where friction is outside the range of its model for the reason given."""
     sine = vibration.vibration_amplitude if vibration.prescribed else None
     ratio, reason = mean_wear(resolved, vibration.motions, wear_model=model, vibration_amplitude=sine)
     if (
@@ -299,12 +307,13 @@ def _wear_point(
         caveats = (*caveats, f"{outside}, so that wear model {model} has no meaning; the wear is by {other}")
         model = other
         ratio, reason = mean_wear(resolved, vibration.motions, wear_model=model, vibration_amplitude=sine)
-    if not reason and friction is not None and friction.reason and friction.friction_model == model:
-        reason = friction.reason
+    reason = reason or outside_friction
     if not reason and resolved.rig.direction.second_direction is not None:
         caveats = (*caveats, "wear is by the motion along the normal; the path within the plane is left out")
     if not reason and not vibration.prescribed:
         caveats = (*caveats, *rise_caveats(vibration.motions, wear_model=model))
+    if not reason:
+        caveats = (*caveats, *_raised_wear(ratio))
     is_soft = resolved.rig.friction_model.for_soft_bodies  # of which the cube tells nothing, also without vibration
     rate = cube_wear_rate(resolved.rig.contact, normal_load=resolved.rig.normal_load)
     still = float("nan") if is_soft else float(rate)
@@ -320,6 +329,43 @@ def _wear_point(
         wear_model=model,
         **_origin(vibration),
         caveats=caveats,
+    )
+
+
+def _withheld_wear(resolved: ResolvedRig, model: str, reason: str) -> WearPoint:
+    """Wear of a rig whose stated vibration has no motion in the range of its contact, with the reason alone."""
+    none = float("nan")
+    is_soft = resolved.rig.friction_model.for_soft_bodies
+    still = none if is_soft else float(cube_wear_rate(resolved.rig.contact, normal_load=resolved.rig.normal_load))
+    return WearPoint(
+        wear_rate=none,
+        intrinsic_wear_rate=still,
+        wear_rate_ratio=none,
+        raw_wear_rate_ratio=none,
+        wear_reduction=none,
+        status=OUTSIDE_MODEL_RANGE,
+        reason=reason,
+        wear_model=model,
+        **_stated_origin(resolved.vibration),
+        caveats=resting_caveats(resolved),
+    )
+
+
+def _outside_friction(resolved: ResolvedRig) -> str | None:
+    """Why the friction of a rig is outside the range of its model; None inside it, or where it lacks an input."""
+    try:
+        return friction_point(resolved).reason
+    except InvalidInput:
+        return None
+
+
+def _raised_wear(ratio: float) -> tuple[str, ...]:
+    """Line on a wear ratio above 1, which no published test has."""
+    if ratio <= 1 + _ROUNDED:
+        return ()
+    return (
+        f"wear ratio {ratio:.3g} is above 1: by this model the vibration raises wear, as it presses the surfaces closer"
+        " than at rest for part of the period; published wear tests have 0.27 to 1.0",
     )
 
 

@@ -127,7 +127,7 @@ def format_si(value: float, unit: str, *, digits: int = 3, scale: float = 0.0) -
     if unit == "m3" and step == -2 and abs(value) >= _MINIMUM_MM3:
         step = -1  # wear volumes are given in mm3
     prefix = {-5: "f", -4: "p", -3: "n", -2: "u", -1: "m", 0: "", 1: "k", 2: "M", 3: "G", 4: "T"}[step]
-    if unit in ("m", "m2", "m3", "m/s", "s") and step > 0:
+    if unit in ("m", "m2", "m3", "m/s", "s", "K") and step > 0:
         prefix, step = "", 0
     scaled = float(f"{value / 10.0 ** (3 * power * step):.{digits}g}")
     number = f"{Decimal(repr(scaled)):f}" if 1e-5 <= abs(scaled) < 1e-4 else f"{scaled:.15g}"

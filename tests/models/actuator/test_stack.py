@@ -163,7 +163,7 @@ def test_tension_beyond_the_preload_at_resonance_is_a_caveat() -> None:
     harsh = stack_caveats(STACK, voltage_offset=0, voltage_peak_to_peak=20, elongation=-2e-6j, frequency=22e3)
     assert kind == ()
     assert harsh == (
-        "tension in the stack: the vibration causes a tension of up to 4e+03 N on a preload of 2000 N;"
+        "tension in the stack: the vibration causes a tension of up to 4003 N on a preload of 2000 N;"
         " ceramics crack in tension: preload more or drive less",
     )
 
@@ -172,7 +172,7 @@ def test_tension_without_a_stated_preload_is_a_caveat() -> None:
     caveats = stack_caveats(
         replace(STACK, preload=None), voltage_offset=0, voltage_peak_to_peak=20, elongation=-2e-6j, frequency=22e3
     )
-    assert caveats == ("the vibration causes a tension in the stack of up to 4e+03 N and no preload is stated",)
+    assert caveats == ("the vibration causes a tension in the stack of up to 4003 N and no preload is stated",)
 
 
 @pytest.mark.parametrize(

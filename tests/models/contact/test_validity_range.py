@@ -130,7 +130,9 @@ def test_a_surface_without_a_validity_range_raises_a_caveat_at_every_separation(
 
 def test_too_few_contacts_for_a_mean_raise_a_caveat() -> None:
     (caveat,) = contact_caveats(replace(TYPICAL, nominal_area=1e-9), separation=1e-6)
-    assert caveat.startswith("only 0.07 asperities are in contact on the nominal 0.001 mm2")
+    assert caveat.startswith("less than one asperity, 0.07 in the mean, is in contact on the nominal 0.001 mm2")
+    (few,) = contact_caveats(replace(TYPICAL, nominal_area=1e-7), separation=1e-6)  # of a hundred times the area
+    assert few.startswith("only 7 asperities are in contact on the nominal 0.1 mm2")
 
 
 def test_a_steeper_exponential_distribution_has_its_own_validity_range() -> None:

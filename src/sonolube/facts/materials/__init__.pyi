@@ -8,6 +8,7 @@ from .catalogue import (
     material_names as material_names,
 )
 from .pair_friction import (
+    TABOR_FACTOR as TABOR_FACTOR,
     DryFriction as DryFriction,
     FrictionPair as FrictionPair,
     YieldStrengthEstimate as YieldStrengthEstimate,

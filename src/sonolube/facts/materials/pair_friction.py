@@ -10,7 +10,8 @@ from typing import Any
 from sonolube.checks import require_positive
 from sonolube.facts.materials.catalogue import Material, material
 
-_TABOR_FACTOR = 3.0
+TABOR_FACTOR = 3.0
+"""Hardness over yield strength, 2.8 to 3.2 by Tabor. []"""
 _MIN_FACTOR, _LARGEST_FACTOR = 2.0, 6.0
 _SOURCE = "D. Tabor, The Hardness and Strength of Metals, J. Inst. Met. 79, 1 (1951): H = c Y, c = 2.8 to 3.2"
 
@@ -78,7 +79,7 @@ def yield_strength_from_hardness(*, hardness: float) -> YieldStrengthEstimate:
     """
     pressure = float(require_positive(hardness=hardness))
     return YieldStrengthEstimate(
-        yield_strength=pressure / _TABOR_FACTOR, low=pressure / _LARGEST_FACTOR, high=pressure / _MIN_FACTOR
+        yield_strength=pressure / TABOR_FACTOR, low=pressure / _LARGEST_FACTOR, high=pressure / _MIN_FACTOR
     )
 
 

@@ -248,10 +248,10 @@ def _tension_caveat(stack: PiezoStack, tension: float) -> str:
     if tension <= (stack.preload or 0.0):
         return ""
     if stack.preload is None:
-        return f"the vibration causes a tension in the stack of up to {tension:.3g} N and no preload is stated"
+        return f"the vibration causes a tension in the stack of up to {tension:.0f} N and no preload is stated"
     return (
-        f"tension in the stack: the vibration causes a tension of up to {tension:.3g} N on a preload of"
-        f" {stack.preload:g} N; ceramics crack in tension: preload more or drive less"
+        f"tension in the stack: the vibration causes a tension of up to {tension:.0f} N on a preload of"
+        f" {stack.preload:.0f} N; ceramics crack in tension: preload more or drive less"
     )
 
 

@@ -145,16 +145,27 @@ def _caveats(contact: RoughContact, lowest: float, highest: float) -> Iterator[s
     fraction = float(real_contact_area(contact, separation=lowest)) / contact.nominal_area
     if not fraction <= MAXIMUM_AREA_FRACTION:
         yield (
-            f"real area is {100 * fraction:.3g} % of the nominal {1e6 * contact.nominal_area:.3g} mm2: above "
+            f"real area is {_percent(fraction)} % of the nominal {1e6 * contact.nominal_area:.6g} mm2: above "
             f"{100 * MAXIMUM_AREA_FRACTION:g} % asperities interact; reduce the load or increase the nominal area"
         )
     count = float(contact_count(contact, separation=highest))
-    if not count >= MINIMUM_CONTACT_COUNT:
+    if count < 1:
         yield (
-            f"only {count:.2g} asperities are in contact on the nominal {1e6 * contact.nominal_area:.3g} mm2: below "
+            f"less than one asperity, {count:.2g} in the mean, is in contact on the nominal "
+            f"{1e6 * contact.nominal_area:.6g} mm2: the statistical contact model does not hold; increase the load or "
+            "the nominal area"
+        )
+    elif not count >= MINIMUM_CONTACT_COUNT:
+        yield (
+            f"only {count:.2g} asperities are in contact on the nominal {1e6 * contact.nominal_area:.6g} mm2: below "
             f"{MINIMUM_CONTACT_COUNT} the mean is not representative of one contact; increase the load or the nominal"
             " area"
         )
+
+
+def _percent(fraction: float) -> str:
+    """Percentage with three digits and without an exponent."""
+    return f"{float(f'{100 * fraction:.3g}'):.15g}"
 
 
 def _exponential_caveat(contact: RoughContact, lowest: float, highest: float) -> str:

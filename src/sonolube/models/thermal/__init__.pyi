@@ -29,6 +29,7 @@ from .flash import (
     low_peclet_rise as low_peclet_rise,
     moving_ellipse_rise as moving_ellipse_rise,
     peclet_number as peclet_number,
+    real_contact_spot as real_contact_spot,
 )
 from .jaeger import moving_rectangle_rise as moving_rectangle_rise
 from .source import (

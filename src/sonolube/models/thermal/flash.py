@@ -336,6 +336,51 @@ def contact_rise(
     return ContactRise(partition + 0 * q, q * peak, q * partition * first.mean_temperature_rise)
 
 
+def real_contact_spot(*, normal_load: float, hardness: float) -> EllipticSource:
+    r"""Circular spot on which the softer body carries a load by plastic flow alone, as one heat source.
+
+    Parameters
+    ----------
+    normal_load : float
+        Force pressing the bodies together. [N]
+    hardness : float
+        Indentation hardness of the softer body. [Pa]
+
+    Returns
+    -------
+    EllipticSource
+
+    Raises
+    ------
+    InvalidInput
+        If a value is not positive and finite.
+
+    See Also
+    --------
+    contact_rise : the flash temperature of it.
+
+    Notes
+    -----
+    .. math:: \pi a^2 = \frac{F_N}{H} .
+
+    One spot is the hottest case: the same area in n equal spots apart from each other is hotter by
+    :math:`1/\sqrt{n}` of its rise at low Peclet number.
+
+    References
+    ----------
+    .. [1] F. P. Bowden, D. Tabor, The Friction and Lubrication of Solids, Oxford (1950), chapters 1 and 2.
+
+    Examples
+    --------
+    >>> from sonolube.models.thermal import real_contact_spot
+    >>> round(1e6 * real_contact_spot(normal_load=5.0, hardness=3.3e9).half_length)  # um
+    22
+    """
+    require_positive(normal_load=normal_load, hardness=hardness)
+    radius = float(np.sqrt(normal_load / (np.pi * hardness)))
+    return EllipticSource(half_length=radius, half_width=radius)
+
+
 def blok_partition(
     stationary: ThermalSolid, moving: ThermalSolid, source: HeatSource, *, sliding_speed: ArrayLike
 ) -> Floats:

@@ -21,6 +21,7 @@ _INPUT_COLUMNS: Final = (
     *("input", "input_label", "input_value", "input_spread", "reason"),
     *("interval_share_left", "force_interval_share_left"),
 )
+_OF_WEAR: Final = ("wear_rate_ratio", "wear_reduction")
 _PERCENT: Final = ("friction_reduction", "wear_reduction")
 
 
@@ -31,7 +32,9 @@ def quantity_rows(prediction: LabelledArrays) -> list[list[str]]:
         ends = [interval(prediction, name, probability) for probability in PROBABILITIES]
         text = [f"{_text(name, low)} to {_text(name, high)}" for low, high in ends]
         rows.append([quantity(name).meaning, _text(name, _median(prediction, name)), *text])
-    return rows
+    return rows + [
+        [quantity(name).meaning, "not known", *("" for _ in PROBABILITIES)] for name in unknown_names(prediction)
+    ]
 
 
 def input_rows(prediction: LabelledArrays) -> list[list[str]]:
@@ -81,6 +84,11 @@ def evidence_object(prediction: LabelledArrays) -> dict[str, Any] | None:
         "fingerprint": attributes["evidence_fingerprint"],
         "sources": attributes["evidence_sources"].split("\n"),
     }
+
+
+def unknown_names(prediction: LabelledArrays) -> list[str]:
+    """Quantities of wear that a prediction leaves open."""
+    return [name for name in _OF_WEAR if name not in prediction.variables]
 
 
 def column(prediction: LabelledArrays, name: str) -> list[Any]:

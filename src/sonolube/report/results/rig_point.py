@@ -15,6 +15,7 @@ from sonolube.vocabulary import si
 if TYPE_CHECKING:
     from sonolube.models.friction import FrictionModel
     from sonolube.prediction.applicability import FrictionInterval
+    from sonolube.prediction.verdict import PointVerdict
     from sonolube.rig import ResolvedRig
     from sonolube.validation.assessment import ErrorStatistics
     from sonolube.validation.published_wear_tests import WearErrors, WearTest
@@ -68,6 +69,25 @@ def beyond_the_model(rig: "Rig | ResolvedRig", model: "FrictionModel", *, interv
 
     is_tested = resolved_rig(rig).rig.direction.is_normal  # as all tests behind that error
     return BeyondTheModel(error=unseen_error(model) if is_tested else None, interval=friction_interval(rig))
+
+
+def own_point_lines(rig: Rig) -> list[str]:
+    """Verdict on a rig's own operating point as a line, for results over many points about it; none without one."""
+    found = _own_verdict(rig)
+    return [] if found is None else [f"  the rig's own point is {found.text}"]
+
+
+def own_point_object(rig: Rig) -> dict[str, Any]:
+    """The same for JSON."""
+    found = _own_verdict(rig)
+    return {} if found is None else found.object()
+
+
+def _own_verdict(rig: Rig) -> "PointVerdict | None":
+    """Verdict on a rig's own operating point; None where it has none."""
+    from sonolube.prediction.verdict import verdict_of_rig
+
+    return verdict_of_rig(rig)
 
 
 _OF_BOTH = attrgetter(

@@ -18,6 +18,7 @@ from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.prediction.chances import reduction_chances
 from sonolube.report import Drawing, Page
 from sonolube.report.results.design import friction_map as results
+from sonolube.report.results.rig_point import own_point_lines, own_point_object
 from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, commanded_quantity, operating_caveats
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 from sonolube.tasks.design.chances import CONFIDENCE, TARGET_REDUCTION, target_chance
@@ -128,11 +129,13 @@ class MapAnswer(Answer):
 
     def blocks(self) -> Sequence[Block]:
         """Greatest reduction, ridge, chance of the target, and points without a result."""
-        return [*results.map_blocks(self.rig, self.mapped), *([Rows(self._chances)] if self._chances else [])]
+        title, *rest = results.map_blocks(self.rig, self.mapped)
+        chances = [Rows(self._chances)] if self._chances else []
+        return [title, *own_point_lines(self.rig), *rest, *chances]
 
     def object(self) -> dict[str, Any]:
         """Greatest reduction with the point where it occurs, and the number of points without a result."""
-        found = results.map_object(self.rig, self.mapped)
+        found = results.map_object(self.rig, self.mapped) | own_point_object(self.rig)
         if CHANCE not in self.mapped:
             return found
         return found | chance_object(self.mapped, confidence=self.confidence)

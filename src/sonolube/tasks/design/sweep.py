@@ -24,6 +24,7 @@ from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.report import Drawing, Page
 from sonolube.report.results.design import sweep as results
 from sonolube.report.results.record_object import amplitude_object, amplitude_rows, friction_model_text
+from sonolube.report.results.rig_point import own_point_lines, own_point_object
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.storage.files import expect_files
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
@@ -110,6 +111,7 @@ class ParametricStudyAnswer(Answer):
         points, load = self.study["status"].size, format_si(self.rig.normal_load, "N")
         return [
             f"{self.rig.title}, {load}, {points} points, {friction_model_text(self.rig)}",
+            *own_point_lines(self.rig),
             Rows([*amplitude_rows(self.rig), *results.rows(self.study, self.of)]),
             *[f"  without result: {count} of {points}: {reason}" for reason, count in self.failures().items()],
         ]
@@ -121,6 +123,7 @@ class ParametricStudyAnswer(Answer):
             "study": self.of,
             "friction_model": self.rig.friction_model.name,
             **amplitude_object(self.rig),
+            **own_point_object(self.rig),
             "least_friction": results.best_objects(self.study),
             "points": int(self.study["status"].size),
             "without_result": results.failure_objects(self.failures()),
@@ -329,11 +332,12 @@ class SweepAnswer(Answer):
 
     def blocks(self) -> Sequence[Block]:
         """Number of points by status, failures, and the point of least friction."""
-        return results.sweep_blocks(self.rig, self.plan, self.result)
+        title, *rest = results.sweep_blocks(self.rig, self.plan, self.result)
+        return [title, *own_point_lines(self.rig), *rest]
 
     def object(self) -> dict[str, Any]:
         """Number of points by status, failures, and the point of least friction."""
-        return results.sweep_object(self.rig, self.plan, self.result)
+        return results.sweep_object(self.rig, self.plan, self.result) | own_point_object(self.rig)
 
     def caveats(self) -> Sequence[str]:
         """Caveats of the rig at its own operating point, and the meaning of ratios below 0 and above 1."""

@@ -8,6 +8,7 @@ from sonolube.prediction.evidence_posterior import EvidencePosterior
 from sonolube.prediction.figures import prediction_chart
 from sonolube.prediction.live_prediction import LivePrediction
 from sonolube.prediction.predictive import DRAWS
+from sonolube.prediction.verdict import PointVerdict, Verdict
 from sonolube.report import Drawing
 from sonolube.report.results import prediction as results
 from sonolube.report.results.rig_point import measured_object, measured_on, measured_text
@@ -100,6 +101,7 @@ class PredictionAnswer(Answer):
             about.append(f"  friction ratio by {attributes['friction_model']} alone: {ratio:.3g}")
         return [
             f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}",
+            f"This point is {self._verdict().words}.",
             *attributes["statement"].split("\n"),
             Table(results.HEADS, results.quantity_rows(self.prediction)),
             Table(_MEASURE_HEADS, [(label, f"{100 * share:.0f} %") for label, share in measured.items()]),
@@ -115,8 +117,10 @@ class PredictionAnswer(Answer):
         shares = results.column(found, "interval_share_left")
         return {
             "rig": self.rig.title,
+            **self._verdict().object(),
             "statement": found.attrs["statement"].split("\n"),
             **{name: results.predicted_object(found, name) for name in results.predicted_names(found)},
+            **dict.fromkeys(results.unknown_names(found)),
             "inputs": results.column(found, "input_text"),
             "share_left_by_measurement": results.measurement_shares(found),
             "stiffness_probes": self._probes(),
@@ -139,6 +143,12 @@ class PredictionAnswer(Answer):
     def files(self) -> Mapping[str, LabelledArrays]:
         """Draws and curves."""
         return {f"{self.rig.name}-prediction.nc": self.prediction}
+
+    def _verdict(self) -> PointVerdict:
+        """Verdict on the operating point."""
+        found = self.prediction.attrs
+        reasons = tuple(line for line in found["verdict_reasons"].split("\n") if line)
+        return PointVerdict(verdict=Verdict(found["verdict"]), reasons=reasons)
 
     def _probes(self) -> list[str]:
         """Sentences on the resonances of the rig that show its contact stiffness."""

@@ -12,7 +12,9 @@ from sonolube.errors import InvalidInput
 from sonolube.models.contact.tangential_stiffness import DEFAULT_TANGENTIAL_STIFFNESS, TANGENTIAL_STIFFNESSES
 from sonolube.models.friction import FRICTION_MODELS, FrictionModel
 from sonolube.models.thermal.flash import FLASH_MODELS
+from sonolube.prediction.bodies import softer_hardness
 from sonolube.prediction.evidence import large_amplitude_caveats
+from sonolube.prediction.verdict import PointVerdict, Verdict, point_verdict, verdict_of_rig
 from sonolube.report import Drawing
 from sonolube.report.results.rig_point import (
     beyond_the_model,
@@ -57,6 +59,8 @@ class RigRecord(Answer):
         stands for a value outside the range of a model, null in JSON.
     measured : sequence of FrictionTest
         What was measured on the rig under the same conditions.
+    verdict : PointVerdict or None
+        On the operating point, the first line; None where it has no vibration to judge.
     leading : sequence of str
         Caveats that stand above the result.
     at_least : collection of str
@@ -72,6 +76,7 @@ class RigRecord(Answer):
     rig: Rig
     result: Any
     measured: Sequence[FrictionTest] = ()
+    verdict: PointVerdict | None = None
     leading: Sequence[str] = ()
     at_least: Collection[str] = ()
     rows: Sequence[tuple[str, str]] = ()
@@ -93,6 +98,9 @@ class RigRecord(Answer):
             if name not in _UNPRINTED
         ]
         rows += [(f"measured {one.label}", measured_text(one)) for one in self.measured]
+        if self.verdict is not None:
+            is_told = self.verdict.verdict == Verdict.OUTSIDE_MODEL_RANGE  # by the reason of the record
+            rows = [("this point is", self.verdict.words if is_told else self.verdict.text), *rows]
         return [f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}", Rows([*rows, *self.rows])]
 
     def object(self) -> dict[str, Any]:
@@ -104,6 +112,8 @@ class RigRecord(Answer):
         }
         content |= {"at_least": list(self.at_least)} if self.at_least else {}
         content |= self.entries
+        if self.verdict is not None:
+            content |= self.verdict.object()
         return content | {"measured": [measured_object(one) for one in self.measured]} if self.measured else content
 
     def caveats(self) -> Sequence[str]:
@@ -201,6 +211,7 @@ def friction(
         result=result,
         measured=measured_on(known, vibration_amplitude=result.vibration_amplitude),
         at_least=_lower_bounds(result.power),
+        verdict=point_verdict(resolved, friction=result),
         leading=large_amplitude_caveats(resolved, vibration_amplitude=result.vibration_amplitude),
         rows=[*([("mechanism", mechanism)] if mechanism else []), *beyond.rows()],
         entries=({"mechanism": mechanism} if mechanism else {}) | beyond.object(),
@@ -223,7 +234,8 @@ def wear(rig: RigFile) -> RigRecord:
     from sonolube.validation.published_wear_tests import wear_model_errors
 
     known = rig_of(rig)
-    result = wear_point(known)
+    resolved = resolved_rig(known)
+    result = wear_point(resolved)
     worn = worn_on(known, vibration_amplitude=result.vibration_amplitude)
     rows = [(f"measured {test.label}", worn_text(test)) for test in worn]
     entries: dict[str, Any] = {"measured": [worn_object(test) for test in worn]} if worn else {}
@@ -231,7 +243,7 @@ def wear(rig: RigFile) -> RigRecord:
         errors = wear_model_errors(result.wear_model)
         rows += wear_error_rows(errors)
         entries |= wear_error_object(errors)
-    return RigRecord(rig=known, result=result, rows=rows, entries=entries)
+    return RigRecord(rig=known, result=result, rows=rows, entries=entries, verdict=verdict_of_rig(resolved))
 
 
 @task
@@ -257,6 +269,7 @@ def simulate(rig: RigFile, **watch: Unpack[Watched]) -> RigRecord:
         result=result,
         at_least=_lower_bounds(result.friction.power),
         measured=measured_on(known, vibration_amplitude=result.vibration.vibration_amplitude),
+        verdict=point_verdict(known, friction=result.friction),
         drawings={name: Drawing(chart=lambda: simulation_chart(labelled))},
         datasets={f"{name}.nc": labelled},
     )
@@ -303,6 +316,7 @@ def thermal(
     '7.3 mW'
     """
     known = rig_of(rig)
+    hardness = softer_hardness(known, pin, disc)
     levels = vibration_heat.split(",") if isinstance(vibration_heat, str) else [vibration_heat]
     result = temperature_point(
         known,
@@ -315,9 +329,12 @@ def thermal(
         vibration_heat_rate=[plausible("vibration_heat", level) for level in levels],
         friction_ratio=in_si("friction_ratio", friction_ratio),
         flash_model=flash_model,
+        hardness=hardness,
     )
     drawing = Drawing(chart=lambda: temperature_chart(known, result))
-    return RigRecord(rig=known, result=result, drawings={f"{known.name}-thermal": drawing})
+    return RigRecord(
+        rig=known, result=result, verdict=verdict_of_rig(known), drawings={f"{known.name}-thermal": drawing}
+    )
 
 
 def _material(name: str | None, role: str) -> str:
