@@ -64,7 +64,9 @@ def test_within_the_plane_each_point_is_predicted_by_the_other_rigs_and_how_far_
     assert (littmann.friction_ratio, gutowski.friction_ratio) == approx((1.0, 0.1))  # D 2.2.5 and 1.3.1
     assert [one.rig for one in luo] == ["M of Luo et al."] * 5
     assert found.covered(0.8) == found.covered(0.95) == 7
-    assert found.median_width < 0.4  # and does not hold everything
+    assert found.median_width < 0.7  # and does not hold everything
+    assert found.rigs == 3
+    assert 0.03 < found.crps_by_rig < 0.09
     assert plane_caption().startswith("Within the plane of contact it was tested with 7 published points along")
 
 

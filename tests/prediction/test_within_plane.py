@@ -15,9 +15,14 @@ from sonolube.errors import InvalidInput
 from sonolube.prediction import LivePrediction, prediction_chart
 from sonolube.prediction.applicability import friction_interval
 from sonolube.prediction.hierarchy import central_interval
-from sonolube.prediction.posterior import learned
 from sonolube.prediction.predictive import rig_prediction
-from sonolube.prediction.within_plane import coulomb_ratio, plane_posterior, plane_rigs, within_plane
+from sonolube.prediction.within_plane import (
+    MINDLIN_SLIP_LENGTH,
+    coulomb_ratio,
+    plane_posterior,
+    plane_rigs,
+    within_plane,
+)
 from sonolube.rig import Rig, friction_point, read_rig
 from sonolube.rig.datasets import LabelledArrays
 from sonolube.rig.vibration_direction import VibrationDirection
@@ -45,20 +50,31 @@ def width(found: LabelledArrays) -> float:
     return float(high - low)
 
 
-@mark.parametrize("place", [0, 1])
-def test_each_published_point_lies_within_the_80_percent_interval_of_the_other(place: int) -> None:
+@mark.parametrize("place", [0, 1, 2])
+def test_the_points_of_each_rig_lie_within_the_80_percent_intervals_by_the_others(place: int) -> None:
     rig = plane_rigs()[place]
-    draws = rig_prediction(plane_posterior(without=(place,)), rig.at, count=4000).ratios(rig.at.conditions)[:, 0]
+    draws = rig_prediction(plane_posterior(without=(place,)), rig.at, count=4000).ratios(rig.at.conditions)
     low, high = central_interval(draws, 0.8)
-    assert low <= rig.friction_ratio[0] <= high
-    assert high - low < 0.4  # and does not hold everything
+    assert np.all(low <= rig.friction_ratio + 1e-9)
+    assert np.all(rig.friction_ratio <= high + 1e-9)
+    assert np.all(high - low < 0.75)  # and do not hold everything
 
 
-def test_two_points_hardly_change_the_width_learned_along_the_normal() -> None:
-    normal, plane = (
-        float(np.exp(np.median(each.hyperparameters[:, 4]))) for each in (learned().friction, plane_posterior())
-    )
-    assert 0.8 * normal < plane < normal  # both points are near Coulomb's law
+def test_the_points_of_luo_unseen_have_a_median_between_coulombs_law_and_none_and_no_draw_at_zero() -> None:
+    rig = plane_rigs()[2]
+    draws = rig_prediction(plane_posterior(without=(2,)), rig.at, count=4000).ratios(rig.at.conditions)
+    assert np.all((np.median(draws, axis=0) > 0.03) & (np.median(draws, axis=0) < 0.4))
+    assert np.all(np.mean(draws < 1e-4, axis=0) < 0.01)
+    assert draws.max() <= 1
+
+
+def test_the_points_shorten_the_slip_length_of_mindlin_and_narrow_it() -> None:
+    mu = plane_posterior().hyperparameters[:, 0]
+    assert 0.1e-6 < np.exp(np.median(mu)) < 0.5 * MINDLIN_SLIP_LENGTH
+    assert mu.std() < 0.6  # 1 before
+    nothing = plane_posterior(without=(0, 1, 2)).hyperparameters[:, 0]
+    assert np.exp(np.median(nothing)) == approx(MINDLIN_SLIP_LENGTH, rel=0.05)
+    assert nothing.std() == approx(1.0, rel=0.05)
 
 
 @mark.parametrize("zeta", [0.01, 0.0934, 0.5, 0.999, 1.0, 1.5, 30.0])
@@ -80,10 +96,11 @@ def test_a_ring_is_the_mean_over_its_directions() -> None:
     assert float(coulomb_ratio(ring, velocity_ratio=0.5)) == approx(mean, abs=1e-4)
 
 
-def test_the_median_of_the_example_is_coulombs_law_and_its_interval_holds_what_was_measured() -> None:
+def test_the_example_has_more_friction_than_a_rigid_contact_and_its_interval_holds_what_was_measured() -> None:
     found = predicted()
-    assert median(found) == approx(2 / np.pi * np.arcsin(PRINTED), abs=0.01)
-    low, high = central_interval(found["friction_ratio"].to_numpy(), 0.8)
+    assert found["friction_ratio"].to_numpy().min() >= 2 / np.pi * np.arcsin(0.9 * PRINTED)
+    assert 0.1 < median(found) < 0.35
+    low, high = central_interval(found["friction_ratio"].to_numpy(), 0.95)
     assert low <= 0.10 <= high  # the printed reduction of 90 %
 
 
@@ -164,7 +181,8 @@ def test_a_circle_is_farther_from_what_was_tested_than_the_lines_and_says_that_i
         )
     )
     assert 0 < line < across < round_
-    assert median(circle) == approx(PRINTED / 2, abs=3e-3)  # of slow sliding over a circle
+    assert circle["friction_ratio"].to_numpy().min() > 0.45 * PRINTED  # half of it, of a rigid contact on a circle
+    assert 0.1 < median(circle) < 0.35
     assert "by theory alone" in circle.attrs["statement"].split("\n")[0].split(": ")[0]
     assert circle["friction_ratio"].to_numpy().min() >= 0
     still = predicted("vibration.second_direction=across", "vibration.second_fraction=1", QUIET)
@@ -212,7 +230,7 @@ def test_slower_sliding_than_tested_is_said_and_widens() -> None:
 @mark.parametrize(
     ("changes", "sentence", "caveat"),
     [
-        ((), "tested with 7 published points", "L-2 of Gutowski and Leus (0.10 where the law has 0.06)"),
+        ((), "tested with 7 published points", "L-2 of Gutowski and Leus (0.10 where the law has 0.2"),
         (("vibration.direction=across",), "theory alone", "compared with no experiment"),
         (("vibration.direction=torsional", "vibration.torsion_radius=2mm"), "theory alone", "no experiment"),
         (("vibration.vibration_direction=20deg",), "theory alone", "no experiment"),
@@ -223,7 +241,7 @@ def test_how_far_it_was_tested_is_said_first(changes: tuple[str, ...], sentence:
     assert sentence in found.attrs["statement"].split("\n")[0].split(". ")[0]
     first, second, *_ = found.attrs["caveats"].split("\n")
     assert caveat in first
-    assert "taken from vibration along the normal" in second
+    assert "one run of your own tells it better" in second
 
 
 def test_the_interval_beside_friction_is_that_of_predict() -> None:

@@ -8,9 +8,10 @@ with the velocity ratio zeta = v_r/(omega a), the error x of the amplitude, and 
 contact. Along the sliding R is the exact ratio of springs on exponential heights; in other directions it lies between
 two exact limits, Coulomb's R_C of rigid contacts and E of slow sliding,
 
-    R = R_C(zeta) + (1 - R_C(zeta)) E(a/s),
+    R = R_C + (1 - R_C) E(a/s) + cos^2 (theta) D,
 
-which is up to 0.15 below springs that are followed through the period (a test has the figures). The prior of the slip
+with what sliding adds along the line, D = R_A - R_C,A - (1 - R_C,A) E_A, of the parts along the sliding. It is up to
+0.15 below springs that are followed through the period (a test has the figures). The prior of the slip
 length is Mindlin's mu C l with the decay length l learned along the normal; the published points are weighed with it.
 The discrepancy delta_r is that of `hierarchy`, with its sigma, between R_C and 1: a contact that yields has more
 friction than a rigid one, and no vibration within the plane raises the mean friction of either. It grows with the
@@ -26,7 +27,7 @@ fifth of the amplitude along the normal moves the ratio from 0.06 to anything be
 
 from dataclasses import dataclass
 from functools import cache, lru_cache
-from math import asin, hypot, pi, sin
+from math import asin, hypot, pi, sin, sqrt
 from typing import Final
 
 import numpy as np
@@ -184,11 +185,16 @@ def _is_along(direction: VibrationDirection) -> bool:
 
 def compliant_ratio(direction: VibrationDirection, *, velocity_ratio: Floats, amplitude_ratio: Floats) -> Floats:
     """Friction ratio of springs on exponential heights, at ratios that broadcast; see above."""
-    if _is_along(direction):
-        return exponential_longitudinal_ratio(velocity_ratio=velocity_ratio, amplitude_ratio=amplitude_ratio)
     rigid = coulomb_ratio(direction, velocity_ratio=velocity_ratio)
-    slow = np.interp(np.log(amplitude_ratio), *_slow_table(direction))
-    return np.asarray(rigid + (1 - rigid) * slow)
+    found = rigid + (1 - rigid) * np.interp(np.log(amplitude_ratio), *_slow_table(direction))
+    size, sine, _ = _shape(direction)
+    along = size * sqrt(max(1 - sine**2, 0.0))
+    if along > _ALONG:  # what sliding adds to it along the line is known
+        zeta, stroke = velocity_ratio / along, amplitude_ratio * along
+        stiff = parallel_vibration_ratio(sliding_speed=zeta, vibration_velocity=1.0)
+        moving = exponential_longitudinal_ratio(velocity_ratio=zeta, amplitude_ratio=stroke)
+        found = found + (1 - sine**2) * (moving - stiff - (1 - stiff) * np.exp(-stroke))
+    return np.clip(found, rigid, 1.0)
 
 
 @lru_cache(maxsize=16)
@@ -212,7 +218,8 @@ def _ratio(log_length: ArrayLike, at: Conditions) -> Floats:
 
 def _effect(log_length: ArrayLike, at: Conditions) -> Floats:
     """Share of the discrepancy that vibration can cause: it vanishes with the amplitude over the slip length."""
-    return np.minimum(_plane(at).amplitude_ratio(log_length) / FULL_EFFECT, 1.0)
+    plane = _plane(at)
+    return np.minimum(_shape(plane.direction)[0] * plane.amplitude_ratio(log_length) / FULL_EFFECT, 1.0)
 
 
 def _bounds(at: Conditions) -> tuple[ArrayLike, ArrayLike]:

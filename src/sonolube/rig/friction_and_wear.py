@@ -283,7 +283,7 @@ class DecayLengthPopulation:
         return self.median / width, self.median * width
 
 
-PUBLISHED_DECAY_LENGTH: Final = DecayLengthPopulation(median=1.6e-6, log_spread=0.57)
+PUBLISHED_DECAY_LENGTH: Final = DecayLengthPopulation(median=1.65e-6, log_spread=0.56)
 """Decay length of the worn contacts in the published friction tests.
 
 Learned with the friction models from the friction of those tests, not from their roughness: amplitude enters the models
