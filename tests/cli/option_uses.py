@@ -139,7 +139,7 @@ MODES = {
             "--running-in": "1m",
             "--measuring-time": "30s",
             "--amplifier-voltage": "25V",
-            "--amplifier-power": "5W",
+            "--amplifier-power": "40W",
             "--temperature-rise": "0.1K",
             "--pin": "aluminium_2024",
             "--disc": "aluminium_2024",
