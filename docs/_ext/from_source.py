@@ -246,7 +246,7 @@ def wear_models() -> str:
 
 
 _CALIBRATION_HEADS = (
-    *("Prediction", *(f"{100 * each:.0f} %" for each in PROBABILITIES), "p (80 %)"),
+    *("Prediction", *(f"{100 * each:.0f} %, tests (rigs)" for each in PROBABILITIES)),
     *("CRPS", "Score", "Width", "Fall by the blind"),
 )
 
@@ -263,18 +263,13 @@ def blind_calibration() -> str:
 
 def _calibration_cells(one: Calibration) -> list[str]:
     coverages = [
-        f"{one.covered(each)}/{len(one.predictions)} ({_percent(one.coverage_interval(each))})"
-        for each in PROBABILITIES
+        f"{one.covered(each)}/{len(one.predictions)} ({one.rigs_covered(each)}/{one.rigs})" for each in PROBABILITIES
     ]
-    scores = [f"{one.p_value(0.8):.2f}", f"{one.crps:.3f}", f"{one.interval_score:.2f}", f"{one.median_width:.2f}"]
+    scores = [f"{one.crps:.3f}", f"{one.interval_score:.2f}", f"{one.median_width:.2f}"]
     rigs = {each.rig for each in one.predictions}
     gain, low, high = calibrations()[0].of_rigs(lambda rig: rig in rigs).gain_over(one)
     fall = "" if one is calibrations()[0] else f"{gain:.3f} ({low:.3f} to {high:.3f})"
     return [one.name, *coverages, *scores, fall]
-
-
-def _percent(ends: tuple[float, float]) -> str:
-    return f"{100 * ends[0]:.0f} to {100 * ends[1]:.0f} %"
 
 
 def blind_headline() -> str:

@@ -257,6 +257,7 @@ def test_heat_needs_both_materials_with_thermal_properties_and_says_which_lack()
 
 def test_an_interval_is_told_in_words_or_why_there_is_none() -> None:
     assert FrictionInterval(low=0.123, high=0.456).text == "0.12 to 0.46 (80 %, `sonolube predict`)"
+    assert FrictionInterval(low=0.123, median=0.3, high=0.456).text == "0.3, 0.12 to 0.46 (80 %, `sonolube predict`)"
     assert FrictionInterval(reason="felt is soft").text == "not predicted: felt is soft"
     assert FrictionInterval(high=0.5, reason="one end").text == "not predicted: one end"
     assert FrictionInterval(low=0.5, reason="one end").text == "not predicted: one end"

@@ -276,12 +276,15 @@ class FrictionInterval:
     ----------
     low, high : float or None
         Ends; None where there is no prediction.
+    median : float or None
+        Between them.
     reason : str
         Why there is none.
     """
 
     low: float | None = None
     high: float | None = None
+    median: float | None = None
     reason: str = ""
 
     @property
@@ -289,7 +292,8 @@ class FrictionInterval:
         """Interval in words, or why there is none."""
         if self.low is None or self.high is None:
             return f"not predicted: {self.reason}"
-        return f"{self.low:.2g} to {self.high:.2g} (80 %, `sonolube predict`)"
+        middle = "" if self.median is None else f"{self.median:.2g}, "
+        return f"{middle}{self.low:.2g} to {self.high:.2g} (80 %, `sonolube predict`)"
 
 
 def friction_interval(rig: Rig | ResolvedRig) -> FrictionInterval:
@@ -305,5 +309,6 @@ def friction_interval(rig: Rig | ResolvedRig) -> FrictionInterval:
     except SonolubeError as refusal:
         return FrictionInterval(reason=str(refusal))
     posterior = learned().friction if resolved.rig.direction.is_normal else plane_posterior()
-    low, high = central_interval(ratio_draws(posterior, at, count=DRAWS)[:, 0], 0.8)
-    return FrictionInterval(low=float(low), high=float(high))
+    draws = ratio_draws(posterior, at, count=DRAWS)[:, 0]
+    low, high = central_interval(draws, 0.8)
+    return FrictionInterval(low=float(low), high=float(high), median=float(np.median(draws)))

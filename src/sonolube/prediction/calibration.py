@@ -9,13 +9,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.prediction.evidence import CLOSURES, TestedRig, published_rigs, rigs_by_records
-from sonolube.prediction.hierarchy import (
-    Prior,
-    binomial_interval,
-    central_interval,
-    continuous_ranked_probability_score,
-    interval_score,
-)
+from sonolube.prediction.hierarchy import Prior, central_interval, continuous_ranked_probability_score, interval_score
 from sonolube.prediction.posterior import Population, Posterior, published_population
 from sonolube.prediction.predictive import ratio_draws
 from sonolube.prediction.within_plane import plane_posterior, plane_rigs
@@ -84,15 +78,17 @@ class Calibration:
             for low, high in [central_interval(one.draws, probability)]
         )
 
-    def coverage_interval(self, probability: float) -> tuple[float, float]:
-        """95 % binomial interval of the coverage."""
-        return binomial_interval(self.covered(probability), len(self.predictions))
+    def covered_by_rig(self, probability: float) -> dict[str, tuple[int, int]]:
+        """Number of tests of each rig within the central interval of a probability, and of all its tests."""
+        found = {}
+        for name in dict.fromkeys(one.rig for one in self.predictions):
+            own = Calibration(name=name, predictions=tuple(one for one in self.predictions if one.rig == name))
+            found[name] = own.covered(probability), len(own.predictions)
+        return found
 
-    def p_value(self, probability: float) -> float:
-        """Two-sided probability of such a coverage or a worse one, if the intervals are right."""
-        from scipy.stats import binomtest
-
-        return float(binomtest(self.covered(probability), len(self.predictions), probability).pvalue)
+    def rigs_covered(self, probability: float) -> int:
+        """Number of rigs all of whose tests lie within."""
+        return sum(inside == count for inside, count in self.covered_by_rig(probability).values())
 
     def of_rigs(self, some: Callable[[str], bool]) -> "Calibration":
         """Calibration of the tests of some rigs, by their names."""

@@ -284,6 +284,7 @@ _MAX_RUNS: Final = 200
 _USUAL_UNCERTAINTY: Final = 0.05  # of a friction ratio, where neither column nor repeats state it
 _WITHIN_ONE_TEST: Final = 0.02  # below which a stated one is a standard error within a test; printed scatter is 0.047
 _MIN_REPEATS: Final = 4  # from which the scatter of repeats is taken
+_LEAST_SCATTER: Final = 0.005  # of repeats, below which their digits tell, not the rig
 _SAME_ANGLE: Final = 0.02  # rad
 
 
@@ -372,7 +373,9 @@ def _uncertainty(runs: "xr.Dataset", ratio: Floats, amplitude: Floats, speed: Fl
     _, group, counts = np.unique(keys, axis=1, return_inverse=True, return_counts=True)
     scatter = pooled_scatter(ratio, group.ravel())
     if scatter is not None and ratio.size - counts.size + 1 >= _MIN_REPEATS:
-        return np.where(np.isnan(stated), scatter, stated), ()
+        alike = f"the repeats scatter by less than {_LEAST_SCATTER:g} of their ratio, which is taken for each"
+        caveat = () if scatter >= _LEAST_SCATTER else (alike,)
+        return np.where(np.isnan(stated), max(scatter, _LEAST_SCATTER), stated), caveat
     return np.where(np.isnan(stated), _USUAL_UNCERTAINTY, stated), (
         f"the runs state no uncertainty and hold too few repeats; {_USUAL_UNCERTAINTY:g} is taken for each ratio",
     )

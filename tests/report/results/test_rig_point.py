@@ -14,7 +14,9 @@ from sonolube.validation.published_tests import NORMAL_VIBRATION_SETS
 
 
 def interval(low: float | None = 0.21) -> Any:
-    return SimpleNamespace(low=low, high=0.53, text="0.21 to 0.53", reason="" if low else "out of range")
+    return SimpleNamespace(
+        low=low, high=0.53, median=low and 0.4, text="0.21 to 0.53", reason="" if low else "out of range"
+    )
 
 
 def test_the_error_of_the_model_is_said_with_the_tests_that_it_is_of() -> None:
@@ -26,13 +28,14 @@ def test_the_error_of_the_model_is_said_with_the_tests_that_it_is_of() -> None:
     ]
     assert both.object() == {
         "model_error": {"rms": 0.1174, "tests": 15},
-        "predicted_friction_ratio": {"interval_80": [0.21, 0.53], "reason": None},
+        "predicted_friction_ratio": {"median": 0.4, "interval_80": [0.21, 0.53], "reason": None},
     }
     unknown = results.BeyondTheModel(error=None, interval=interval(None))
     assert unknown.rows()[0] == ("left out", "the error of the model, which with these parameters is not known")
     assert unknown.object() == {
-        "model_error": None, "predicted_friction_ratio": {"interval_80": None, "reason": "out of range"},
-    }  # fmt: skip
+        "model_error": None,
+        "predicted_friction_ratio": {"median": None, "interval_80": None, "reason": "out of range"},
+    }
     without = results.BeyondTheModel(error=error, interval=None)
     assert without.rows() == [("left out", "the error of the model, which --interval states")]
     assert without.object() == {}

@@ -38,6 +38,14 @@ class BeyondTheModel:
 
     def rows(self) -> list[tuple[str, str]]:
         """Names and texts."""
+        return [*self.left_out(), *self.predicted()]
+
+    def predicted(self) -> list[tuple[str, str]]:
+        """Interval with the error of the model, where it is asked for."""
+        return [] if self.interval is None else [("predicted ratio", self.interval.text)]
+
+    def left_out(self) -> list[tuple[str, str]]:
+        """What a number of the model alone leaves out."""
         if self.interval is None:
             return [("left out", "the error of the model, which --interval states")]
         error = "the error of the model, which with these parameters is not known"
@@ -46,7 +54,7 @@ class BeyondTheModel:
                 f"the error of the model: +-{self.error.rms:.2g} in the ratio on {self.error.count} published tests,"
                 " each unseen"
             )
-        return [("left out", error), ("predicted ratio", self.interval.text)]
+        return [("left out", error)]
 
     def object(self) -> dict[str, Any]:
         """Entries for JSON."""
@@ -55,7 +63,11 @@ class BeyondTheModel:
         ends = None if self.interval.low is None else [self.interval.low, self.interval.high]
         return {
             "model_error": None if self.error is None else {"rms": self.error.rms, "tests": self.error.count},
-            "predicted_friction_ratio": {"interval_80": ends, "reason": self.interval.reason or None},
+            "predicted_friction_ratio": {
+                "median": self.interval.median,
+                "interval_80": ends,
+                "reason": self.interval.reason or None,
+            },
         }
 
 

@@ -61,6 +61,8 @@ class RigRecord(Answer):
         What was measured on the rig under the same conditions.
     verdict : PointVerdict or None
         On the operating point, the first line; None where it has no vibration to judge.
+    headline : sequence of tuple of str
+        Names and texts before the quantities.
     leading : sequence of str
         Caveats that stand above the result.
     at_least : collection of str
@@ -77,6 +79,7 @@ class RigRecord(Answer):
     result: Any
     measured: Sequence[FrictionTest] = ()
     verdict: PointVerdict | None = None
+    headline: Sequence[tuple[str, str]] = ()
     leading: Sequence[str] = ()
     at_least: Collection[str] = ()
     rows: Sequence[tuple[str, str]] = ()
@@ -98,6 +101,7 @@ class RigRecord(Answer):
             if name not in _UNPRINTED
         ]
         rows += [(f"measured {one.label}", measured_text(one)) for one in self.measured]
+        rows = [*self.headline, *rows]
         if self.verdict is not None:
             is_told = self.verdict.verdict == Verdict.OUTSIDE_MODEL_RANGE  # by the reason of the record
             rows = [("this point is", self.verdict.words if is_told else self.verdict.text), *rows]
@@ -213,7 +217,8 @@ def friction(
         at_least=_lower_bounds(result.power),
         verdict=point_verdict(resolved, friction=result),
         leading=large_amplitude_caveats(resolved, vibration_amplitude=result.vibration_amplitude),
-        rows=[*([("mechanism", mechanism)] if mechanism else []), *beyond.rows()],
+        headline=beyond.predicted(),
+        rows=[*([("mechanism", mechanism)] if mechanism else []), *beyond.left_out()],
         entries=({"mechanism": mechanism} if mechanism else {}) | beyond.object(),
     )
 
