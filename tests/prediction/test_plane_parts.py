@@ -31,7 +31,7 @@ def at(zeta: float, direction: VibrationDirection, *, factor: float = 1.0) -> An
     return plane.within_plane(known.scaled(decay_length=np.array([1.5 * factor])), direction)
 
 
-def test_the_velocity_ratio_is_sliding_over_peak_velocity_with_the_error_of_the_amplitude() -> None:
+def test_the_velocity_ratio_is_sliding_over_vibration_velocity_with_the_error_of_the_amplitude() -> None:
     # decay length over its reference of 1.5 um carries the error: 1.2 times it is an amplitude 1.2 times smaller
     assert at(0.3, ALONG).velocity_ratio == approx([0.3])
     off = at(0.3, ALONG, factor=1.2)
@@ -42,7 +42,7 @@ def test_the_velocity_ratio_is_sliding_over_peak_velocity_with_the_error_of_the_
 
 
 def test_of_a_measured_velocity_the_amplitude_alone_has_an_error() -> None:
-    measured = replace(at(0.3, ALONG, factor=1.2), peak_velocity=np.array([2 * pi * 2e4 * 2e-6]))
+    measured = replace(at(0.3, ALONG, factor=1.2), vibration_velocity=np.array([2 * pi * 2e4 * 2e-6]))
     assert measured.velocity_ratio == approx([0.3])
     assert measured.amplitude_ratio(log(0.5e-6)) == approx([2.0 / 1.2 / 0.5])
 

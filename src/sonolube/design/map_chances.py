@@ -52,7 +52,7 @@ def chance_chart(computed: "xr.Dataset", *, confidence: float | None = None) -> 
     computed : xarray.Dataset
         By `with_chances`.
     confidence : float, optional
-        Chance that is wanted. []
+        Chance that is wanted.
 
     Returns
     -------

@@ -94,19 +94,19 @@ class PlaneConditions(Conditions):
     ----------
     direction : VibrationDirection
         In one direction of the plane, torsional, or an ellipse within the plane.
-    peak_velocity : ndarray or None
+    vibration_velocity : ndarray or None
         Of the vibration, where it was measured and the amplitude was not. [m/s]
     """
 
     direction: VibrationDirection
-    peak_velocity: Floats | None = None
+    vibration_velocity: Floats | None = None
 
     @property
     def velocity_ratio(self) -> Floats:
         """Sliding speed over peak velocity of the vibration, by the amplitude with its error. []"""
         error = self.decay_length / REFERENCE_DECAY_LENGTH
-        if self.peak_velocity is not None:
-            return np.asarray(self.sliding_speed / self.peak_velocity * np.ones_like(error))
+        if self.vibration_velocity is not None:
+            return np.asarray(self.sliding_speed / self.vibration_velocity * np.ones_like(error))
         peak = 2 * pi * self.frequency * self.vibration_amplitude
         return np.asarray(self.sliding_speed / peak * error)
 
@@ -267,7 +267,7 @@ def _rig(published: PublishedRig) -> TestedRig:
         sliding_speed=np.array([point.sliding_speed for point in points]),
         decay_length=np.full(len(points), REFERENCE_DECAY_LENGTH),
         direction=section.path,
-        peak_velocity=velocity if is_velocity else None,
+        vibration_velocity=velocity if is_velocity else None,
     )
     name = points[0].label if len(points) == 1 else section.set
     return TestedRig(

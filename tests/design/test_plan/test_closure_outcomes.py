@@ -42,7 +42,7 @@ def test_the_outcomes_have_the_moments_of_the_prediction(own: TestedRig | None) 
 def test_own_runs_narrow_the_outcomes_where_they_were_made() -> None:
     before, after = (moments(closure_outcomes([learned().friction], AT, own=own)[0])[1] for own in (None, OWN))
     assert after[1] < 0.5 * before[1]
-    assert np.all(after < before)
+    assert np.all(after[:2] < before[:2])  # the fastest is moved to where vibration has an effect that is less certain
 
 
 @pytest.mark.parametrize("count", [2, 3])

@@ -364,7 +364,7 @@ def test_the_figure_shows_friction_drive_and_speed_with_units(held: HeldFriction
     assert chart.size[0] * 25.4 == pytest.approx(174, abs=1)
 
 
-@pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.parametrize("seed", [0, 2])
 def test_friction_of_the_virtual_tribometer_is_held_under_a_step_of_speed(seed: int) -> None:
     rig = read_rig(TRIBOMETER)
     virtual = virtual_tribometer(rig, seed=seed)

@@ -184,7 +184,7 @@ def test_on_the_ridge_doubling_the_power_reduces_friction_by_five_percent() -> N
     known = np.isfinite(ridge)
     assert known.any()
     assert np.all(np.diff(ridge[known]) > 0)
-    power = found["actuator_power"].values
+    power = found["charging_power"].values
     for place in np.flatnonzero(known)[:3]:
         column = found["friction_reduction"].values[:, place]
         at, twice = np.interp([ridge[place], 2 * ridge[place]], power, column)

@@ -29,16 +29,16 @@ def asked(monkeypatch: MonkeyPatch) -> Asked:
     """Problem, aims and resistance that the search was called with."""
     seen: Asked = {}
 
-    def search(problem: Any, **named: Any) -> Any:
-        seen.update(named, problem=problem)
+    def search(problem: Any, rig: Any, **named: Any) -> Any:
+        seen.update(named, problem=problem, rig=rig)
         named["advance"](3, 7)
-        return SimpleNamespace(best="best")
+        return SimpleNamespace(best="best"), "chance"
 
     def electronics(problem: Any, best: Any, *, source_resistance: Any) -> str:
         seen.update(best=best, source=source_resistance)
         return "electronics"
 
-    monkeypatch.setattr(NAMES.optimisation, "optimise", search)
+    monkeypatch.setattr(module, "optimum_with_chance", search)
     monkeypatch.setattr(NAMES.optimisation, "required_electronics", electronics)
     return seen
 
@@ -54,7 +54,8 @@ def test_a_target_alone_is_sought_for_least_power_within_a_fifth_of_the_frequenc
     assert (problem.limits.voltage_maximum, problem.limits.temperature_rise) == (None, None)
     assert (asked["minimise"], asked["second_objective"], asked["samples"]) == ("power", None, 16)
     assert (asked["best"], asked["source"]) == ("best", None)
-    assert answer.electric == "electronics"
+    assert (answer.electric, answer.chance) == ("electronics", "chance")
+    assert (asked["rig"], asked["confidence"], asked["runs"]) == (rig, None, None)
     assert any(told[-2:] == (3, 7) for told in stages)
     optimise(rig, target_friction="0.5115N")
     assert asked["problem"].friction_ratio == approx(0.5)

@@ -46,11 +46,11 @@ class ReachedChance:
     friction_reduction : float
         Target. []
     chance : float
-        That it is reached. []
+        That it is reached.
     low, median, high : float
-        Friction ratio of the design: median, and ends of the 80 % interval. []
+        Friction ratio of the design: median, and ends of the 80 % interval.
     wanted : float or None
-        Chance that was asked for. []
+        Chance that was asked for.
     """
 
     friction_reduction: float
@@ -107,7 +107,7 @@ def optimum_with_chance(
         That of the problem.
     confidence : float or None
         Chance with which the ratio is to be reached, by `confident_optimum`; that of the friction model alone where
-        None. []
+        None.
     runs : xarray.Dataset, optional
         Own measured runs, as `predict` takes them.
     searched : Searched
@@ -156,7 +156,7 @@ def confident_optimum(
     chances : ReductionChances
         Of its rig with a computed amplitude.
     friction_reduction, confidence : float
-        Target, and the chance with which it is to be reached. []
+        Target, and the chance with which it is to be reached.
     searched : Searched
         Arguments of `optimise`.
 

@@ -9,7 +9,7 @@ import numpy as np
 from sonolube import design
 from sonolube.checks import Floats
 from sonolube.design import map_chart, map_kinds, map_page, measured_map_chart
-from sonolube.design.map_chances import CHANCE, chance_chart, chance_facts, chance_object, with_chances
+from sonolube.design.map_chances import chance_chart, chance_facts, chance_object, with_chances
 from sonolube.design.maps import default_axes
 from sonolube.design.runs_map import require_mappable, runs_map, runs_on_map
 from sonolube.errors import InvalidInput
@@ -136,7 +136,7 @@ class MapAnswer(Answer):
     def object(self) -> dict[str, Any]:
         """Greatest reduction with the point where it occurs, and the number of points without a result."""
         found = results.map_object(self.rig, self.mapped) | own_point_object(self.rig)
-        if CHANCE not in self.mapped:
+        if not self._has_chances:
             return found
         return found | chance_object(self.mapped, confidence=self.confidence)
 
@@ -156,7 +156,7 @@ class MapAnswer(Answer):
             drawings[f"{self._name}-measured"] = Drawing(
                 chart=lambda: measured_map_chart(between, runs), caption=_MEASURED_CAPTION, forms=forms
             )
-        if CHANCE in self.mapped:
+        if self._has_chances:
             drawings[f"{self._name}-chance"] = Drawing(
                 chart=lambda: chance_chart(self.mapped, confidence=self.confidence),
                 caption=_CHANCE_CAPTION,
@@ -180,9 +180,14 @@ class MapAnswer(Answer):
         return replace(page, facts=[*page.facts, *self._chances])
 
     @property
+    def _has_chances(self) -> bool:
+        """Whether the map has the chance of a target."""
+        return "target_reduction" in self.mapped.attrs
+
+    @property
     def _chances(self) -> list[tuple[str, str]]:
         """Chances of the target, where one is asked for."""
-        return chance_facts(self.mapped, confidence=self.confidence) if CHANCE in self.mapped else []
+        return chance_facts(self.mapped, confidence=self.confidence) if self._has_chances else []
 
     @property
     def _name(self) -> str:

@@ -115,7 +115,7 @@ def new(
     >>> round(answer.rig.friction_coefficient, 3)  # middle of the range of dry steel on aluminium
     0.475
     >>> round(float(sl.friction(answer.rig)["friction_ratio"]), 2)
-    0.26
+    0.27
     """
     every = {"amplitude": amplitude, "actuator": actuator, "voltage": voltage, "pin_finish": pin_finish}
     refuse_two_of_one(every | {"pin_scan": pin_scan, "disc_finish": disc_finish, "scan": scan})
