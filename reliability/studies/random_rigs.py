@@ -7,6 +7,7 @@ import sys
 import warnings
 from collections.abc import Sequence
 from functools import partial
+from math import isclose
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -157,8 +158,20 @@ def _on_terminal(path: Path, answers: dict[str, Answer | str]) -> dict[str, obje
         if isinstance(answer, str):
             apart += int(ran.returncode != 2 or answer.partition(":")[0] not in ran.stderr)
         else:
-            apart += int(ran.returncode != 0 or json.loads(ran.stdout) | {"files": 0} != _plain(answer) | {"files": 0})
+            same = ran.returncode == 0 and _same(json.loads(ran.stdout) | {"files": 0}, _plain(answer) | {"files": 0})
+            apart += int(not same)
     return {"terminal": len(answers), "terminal_apart": apart}
+
+
+def _same(one: Any, other: Any) -> bool:
+    """Whether two answers have the same keys and words, and numbers to 1e-12."""
+    if isinstance(one, dict) and isinstance(other, dict):
+        return list(one) == list(other) and all(_same(one[key], other[key]) for key in one)
+    if isinstance(one, list) and isinstance(other, list):
+        return len(one) == len(other) and all(map(_same, one, other))
+    if isinstance(one, float) and isinstance(other, float | int):
+        return isclose(one, other, rel_tol=1e-12, abs_tol=1e-300)
+    return bool(one == other)
 
 
 def _plain(answer: Answer) -> dict[str, Any]:

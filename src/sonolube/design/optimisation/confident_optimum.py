@@ -155,8 +155,10 @@ def confident_optimum(
         Whose friction ratio is replaced.
     chances : ReductionChances
         Of its rig with a computed amplitude.
-    friction_reduction, confidence : float
-        Target, and the chance with which it is to be reached.
+    friction_reduction : float
+        Target. []
+    confidence : float
+        Chance with which it is to be reached.
     searched : Searched
         Arguments of `optimise`.
 
