@@ -17,6 +17,7 @@ from sonolube.prediction.evidence import CLOSURES, TestedRig, published_rigs
 from sonolube.prediction.hierarchy import Prior
 from sonolube.prediction.posterior import Population
 
+_TESTS = sum(rig.friction_ratio.size for rig in published_rigs())
 _DECAY = 3.0  # of the heights per R_q, by which a roughness gives a decay length
 _UNWORN = {"A": 0.58e-6, "B": 2.12e-6, "C": 0.56e-6, "G": 0.857e-6}  # m, R_q as printed before the tests
 _WORN = {"B": 2.12e-6, "C": 2.26e-6, "G": 1.49e-6}  # m, after them; of the two tips of G the geometric mean
@@ -121,8 +122,8 @@ def _text(record: Record) -> str:
     assert isinstance(covered, list)
     assert isinstance(gain, list)
     return (
-        f"{'/'.join(map(str, covered))} of 17; {float(str(record['crps'])):.3f}; {float(str(record['width'])):.2f};"
-        f" {gain[0]:.3f} ({gain[1]:.3f} to {gain[2]:.3f})"
+        f"{'/'.join(map(str, covered))} of {_TESTS}; {float(str(record['crps'])):.3f};"
+        f" {float(str(record['width'])):.2f}; {gain[0]:.3f} ({gain[1]:.3f} to {gain[2]:.3f})"
     )
 
 
