@@ -48,7 +48,7 @@ _NAMES = {
 }  # fmt: skip
 _SYMMETRIC = ("min", "max", "minimum", "maximum", "isclose", "allclose", "hypot", "gcd")  # in their first arguments
 _DROPPED = ("abs", "sorted", "reversed", "round", "sqrt", "log", "log10", "exp", "unique", "sort", "strip", "deg2rad")
-_NOT_MODELS = ("figure", "jax_kernels", "__init__", "mode_files")
+_NOT_MODELS = ("figure", "__init__", "mode_files")
 _NOT_PHYSICS = ("Invalid", "Outside", "Unknown", "warn", "approx_text", "format_si", "njit", "VariantTable", "Field")
 _LOOKS = (
     "size",

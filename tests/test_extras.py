@@ -50,7 +50,7 @@ def test_every_extra_of_the_project_has_its_line_in_the_package() -> None:
 
 def test_the_extra_all_has_every_other_that_a_usual_computer_can_use() -> None:
     (every,) = PROJECT["optional-dependencies"]["all"]
-    assert set(re.findall(r"[\w-]+", every)) == {"sonolube", *EXTRAS} - {"cluster", "gpu"}
+    assert set(re.findall(r"[\w-]+", every)) == {"sonolube", *EXTRAS} - {"cluster"}
 
 
 def test_every_package_that_is_imported_is_required_and_every_extra_is_used() -> None:

@@ -104,10 +104,6 @@ class InconsistentCoupling(ModelRangeWarning):
     """A stated coupling factor that disagrees with the one from stroke, stiffness and capacitance."""
 
 
-class GpuUnused(UserWarning):
-    """A GPU was requested but the processor was used; the results are the same, the computation slower."""
-
-
 def words_of(failure: BaseException) -> str:
     """What an exception says, in one line; empty where it says nothing, or its text fails."""
     try:

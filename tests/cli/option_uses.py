@@ -30,7 +30,7 @@ OWN_RUNS = str(ROOT / "examples" / "tribometer-runs.csv")
 SWITCHES = str(ROOT / "examples" / "decay-length-run.csv")
 OVER = ("--over", "sliding.sliding_speed=20mm/s,50mm/s")
 STUDY = {"--over": OVER[1], "--of": "waveform", "--from": "", "--to": "", "--points": "4", "--voltage": "10V"}
-DRAWN = {"--sample": "lhs", "--seed": "1", "--workers": "1", "--scheduler": "local", "--chunk": "7", "--backend": "gpu"}
+DRAWN = {"--sample": "lhs", "--seed": "1", "--workers": "1", "--scheduler": "local", "--chunk": "7"}
 SWEEP = STUDY | DRAWN | LOADED | {"--amplitude": "computed"}
 SHEETS = {"--test-sheet": "FOLDER/sheet.toml", "--report": "OUT/page.html"}
 KNOWN = (
@@ -65,7 +65,7 @@ sliding_speed = "50 mm/s"
 MAP = ("--over", "sliding.sliding_speed=10mm/s,20mm/s", "--over", "drive.voltage_peak_to_peak=5V,10V")
 
 # Options that say how an answer is computed or kept: the answer stays the same.
-EXECUTION = {"--once", "--force", "--real-time", "--yes", "--workers", "--scheduler", "--chunk", "--backend", "--keep"}
+EXECUTION = {"--once", "--force", "--real-time", "--yes", "--workers", "--scheduler", "--chunk", "--keep"}
 # Options of the place of files, which every run here gives, and of the form of text.
 PLACES = {"--out", "--json", "--help", "--brief"}
 # A run takes a minute, or needs a test of its own; tests of these commands try them.
@@ -427,7 +427,6 @@ MODES = {
             "--load": "2N",
             "--amplitude": "per-volt",
             "--set": "contact.roughness.rms_height=1um",
-            "--backend": "gpu",
         },
     ),
     "map of chances": Mode(

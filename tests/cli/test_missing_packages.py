@@ -8,7 +8,6 @@ from pytest import MonkeyPatch
 from tests.cli.conftest import Program
 
 from sonolube.extras import EXTRAS
-from sonolube.models.dynamics.backend import _gpu
 
 RIG = str(Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml")
 DEVICES = str(Path(__file__).parents[2] / "examples" / "lab" / "devices.toml")
@@ -43,16 +42,3 @@ def test_a_missing_package_is_refused_in_one_line_with_its_command(
     assert EXTRAS[name].package in refusal
     assert EXTRAS[name].command in refusal
     assert not Path("out").exists()
-
-
-def test_a_missing_package_for_the_gpu_is_a_warning_with_its_command(
-    sonolube: Program, monkeypatch: MonkeyPatch
-) -> None:
-    hide(EXTRAS["gpu"].modules, monkeypatch)
-    _gpu.cache_clear()
-    try:
-        run = sonolube("sweep", RIG, *SPEEDS, "--backend", "gpu")
-    finally:
-        _gpu.cache_clear()
-    assert run.code == 0
-    assert EXTRAS["gpu"].command in run.err

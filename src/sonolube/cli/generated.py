@@ -11,7 +11,6 @@ import typer
 
 from sonolube.cli.console import options
 from sonolube.cli.console.delivery import deliver
-from sonolube.cli.console.figure_style import gpu_warning
 from sonolube.cli.console.options import ContinuedFolder, OutputFile, OutputFolder, operator_arguments, progress
 from sonolube.errors import InvalidInput
 from sonolube.execution.compilation import few_points
@@ -95,7 +94,7 @@ def command_of(
 
     def run(context: typer.Context, **typed: Any) -> None:
         given = frozenset(name for name in typed if _is_given(context, name))
-        with argument_names(lambda name: names.get(name, name)), observed(progress), few_points(), gpu_warning():
+        with argument_names(lambda name: names.get(name, name)), observed(progress), few_points():
             arguments = {each.name: each.value(typed, names) for each in inputs if each.is_given(given)}
             if keep is not None:
                 arguments["keep"] = (

@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike, NDArray
 from sonolube.checks import Floats, require_positive
 from sonolube.design.point_statistics import saturation_power
 from sonolube.errors import InvalidInput
-from sonolube.models.dynamics.backend import Backend, device_name, usable_backend
 from sonolube.rig import (
     AMPLITUDE,
     NUMBERS,
@@ -46,7 +45,6 @@ def velocity_stress_map(
     normal_load: ArrayLike,
     voltage_peak_to_peak: ArrayLike | None = None,
     vibration_amplitude: ArrayLike | None = None,
-    backend: Backend = "cpu",
     power: FiguredPower = "power_to_supply",
 ) -> "xr.Dataset":
     """Friction reduction over sliding speed and nominal stress, for several drive voltages or amplitudes.
@@ -63,8 +61,6 @@ def velocity_stress_map(
         Drive voltages, one per panel; the offset is scaled in the rig's own ratio. [V]
     vibration_amplitude : array_like, shape (p,), optional
         Amplitudes of a rig without a drive voltage, one per panel. [m]
-    backend : {"cpu", "gpu"}
-        Whether JAX computes the vibrations on its GPU; its name is then the attribute `device`.
     power : {"power_to_supply", "charging_power"}
         Power that stands beside a voltage in figures; the charge of the capacitance alone is D 1.9's.
 
@@ -81,11 +77,6 @@ def velocity_stress_map(
         If the rig has no amplitude, the quantity given does not set its vibration, or values are not positive and
         increasing.
 
-    Warns
-    -----
-    GpuUnused
-        If a GPU was requested and none can be used.
-
     See Also
     --------
     velocity_power_map, velocity_amplitude_map, frequency_voltage_map
@@ -99,17 +90,12 @@ def velocity_stress_map(
     if len(panels) != 1:
         raise InvalidInput("a velocity-stress map needs either voltage_peak_to_peak or vibration_amplitude")
     return _computed_map(
-        rig, "velocity-stress", backend, power=power, **panels, normal_load=normal_load, sliding_speed=sliding_speed
+        rig, "velocity-stress", power=power, **panels, normal_load=normal_load, sliding_speed=sliding_speed
     )
 
 
 def velocity_amplitude_map(
-    rig: Rig,
-    *,
-    sliding_speed: ArrayLike,
-    vibration_amplitude: ArrayLike,
-    normal_load: ArrayLike,
-    backend: Backend = "cpu",
+    rig: Rig, *, sliding_speed: ArrayLike, vibration_amplitude: ArrayLike, normal_load: ArrayLike
 ) -> "xr.Dataset":
     """Friction reduction over sliding speed and vibration amplitude, for several normal loads.
 
@@ -123,8 +109,6 @@ def velocity_amplitude_map(
         Zero to peak, the same under every load. [m]
     normal_load : array_like, shape (p,)
         Forces pressing the bodies together, one per panel. [N]
-    backend : {"cpu", "gpu"}
-        A sine is computed on the CPU.
 
     Returns
     -------
@@ -143,7 +127,6 @@ def velocity_amplitude_map(
     return _computed_map(
         rig,
         "velocity-amplitude",
-        backend,
         normal_load=normal_load,
         vibration_amplitude=vibration_amplitude,
         sliding_speed=sliding_speed,
@@ -156,7 +139,6 @@ def velocity_power_map(
     sliding_speed: ArrayLike,
     voltage_peak_to_peak: ArrayLike,
     normal_load: ArrayLike,
-    backend: Backend = "cpu",
     power: FiguredPower = "power_to_supply",
 ) -> "xr.Dataset":
     """Friction reduction over sliding speed and power, for several normal loads, with the saturation power.
@@ -171,8 +153,6 @@ def velocity_power_map(
         Drive voltages, which determine the powers; the offset is scaled in the rig's own ratio. [V]
     normal_load : array_like, shape (p,)
         Forces pressing the bodies together, one per panel; the structure is kept. [N]
-    backend : {"cpu", "gpu"}
-        Whether JAX computes the vibrations on its GPU; its name is then the attribute `device`.
     power : {"power_to_supply", "charging_power"}
         Power that the map is over; the charge of the capacitance alone is D 1.9's.
 
@@ -189,11 +169,6 @@ def velocity_power_map(
     InvalidInput
         If the rig has no drive voltage or amplitude, or values are not positive and increasing.
 
-    Warns
-    -----
-    GpuUnused
-        If a GPU was requested and none can be used.
-
     See Also
     --------
     saturation_power, velocity_stress_map, frequency_voltage_map
@@ -205,7 +180,6 @@ def velocity_power_map(
     computed = _computed_map(
         rig,
         "velocity-power",
-        backend,
         power=power,
         normal_load=normal_load,
         voltage_peak_to_peak=voltage_peak_to_peak,
@@ -221,9 +195,7 @@ def velocity_power_map(
     return computed.assign(saturation_power=(("normal_load", "sliding_speed"), saturation, labels))
 
 
-def frequency_voltage_map(
-    rig: Rig, *, frequency: ArrayLike, voltage_peak_to_peak: ArrayLike, backend: Backend = "cpu"
-) -> "xr.Dataset":
+def frequency_voltage_map(rig: Rig, *, frequency: ArrayLike, voltage_peak_to_peak: ArrayLike) -> "xr.Dataset":
     """Friction reduction over drive frequency and voltage, at the rig's load and speed.
 
     Parameters
@@ -234,8 +206,6 @@ def frequency_voltage_map(
         Drive frequencies. [Hz]
     voltage_peak_to_peak : array_like, shape (m,)
         Drive voltages; the offset is scaled in the rig's own ratio. [V]
-    backend : {"cpu", "gpu"}
-        Whether JAX computes the vibrations on its GPU; its name is then the attribute `device`.
 
     Returns
     -------
@@ -247,23 +217,14 @@ def frequency_voltage_map(
     InvalidInput
         If the rig has no drive voltage or amplitude, or values are not positive and increasing.
 
-    Warns
-    -----
-    GpuUnused
-        If a GPU was requested and none can be used.
-
     See Also
     --------
     velocity_power_map, velocity_stress_map
     """
-    return _computed_map(
-        rig, "frequency-voltage", backend, voltage_peak_to_peak=voltage_peak_to_peak, frequency=frequency
-    )
+    return _computed_map(rig, "frequency-voltage", voltage_peak_to_peak=voltage_peak_to_peak, frequency=frequency)
 
 
-def frequency_amplitude_map(
-    rig: Rig, *, frequency: ArrayLike, vibration_amplitude: ArrayLike, backend: Backend = "cpu"
-) -> "xr.Dataset":
+def frequency_amplitude_map(rig: Rig, *, frequency: ArrayLike, vibration_amplitude: ArrayLike) -> "xr.Dataset":
     """Friction reduction over frequency and vibration amplitude, at the rig's load and speed.
 
     Parameters
@@ -274,8 +235,6 @@ def frequency_amplitude_map(
         Frequencies of the vibration. [Hz]
     vibration_amplitude : array_like, shape (m,)
         Zero to peak, the same at every frequency. [m]
-    backend : {"cpu", "gpu"}
-        A sine is computed on the CPU.
 
     Returns
     -------
@@ -291,18 +250,13 @@ def frequency_amplitude_map(
     --------
     velocity_amplitude_map, frequency_voltage_map
     """
-    return _computed_map(
-        rig, "frequency-amplitude", backend, vibration_amplitude=vibration_amplitude, frequency=frequency
-    )
+    return _computed_map(rig, "frequency-amplitude", vibration_amplitude=vibration_amplitude, frequency=frequency)
 
 
-def _computed_map(
-    rig: Rig, kind: str, backend: Backend, *, power: FiguredPower = "power_to_supply", **axes: ArrayLike
-) -> "xr.Dataset":
+def _computed_map(rig: Rig, kind: str, *, power: FiguredPower = "power_to_supply", **axes: ArrayLike) -> "xr.Dataset":
     """Operating points on the grid of some axes as a dataset, with nominal pressure and, under a voltage, its power."""
     quantity = quantity_of_axis(axes)
     require_commanded(rig, quantity)
-    backend = usable_backend(backend)
     values = {name: np.atleast_1d(require_positive(**{name: array})) for name, array in axes.items()}
     for name, array in values.items():
         if array.ndim != 1:
@@ -313,7 +267,7 @@ def _computed_map(
     shape = tuple(array.size for array in values.values())
     mesh: dict[str, Any] = dict(zip(values, np.meshgrid(*values.values(), indexing="ij"), strict=True))
     settings = level_settings(rig, mesh.pop(quantity.name))
-    points = point_batch(rig, **mesh, **settings, backend=backend)
+    points = point_batch(rig, **mesh, **settings)
     left_out = (*values, *_MAP_POWERS) if quantity is VOLTAGE else (*values, *POWERS)
     columns: dict[str, NDArray[Any]] = {
         name: points.numbers[name].reshape(shape) for name in NUMBERS if name not in left_out
@@ -323,7 +277,6 @@ def _computed_map(
     about = (
         {"result": "map", "rig": rig.title, "map": kind}
         | amplitude_labels(rig)
-        | ({"device": device_name(backend)} if backend == "gpu" else {})
         | ({"power": power} if quantity is VOLTAGE else {})
     )
     computed = gridded(columns, axes=values, title=f"Friction reduction, {rig.title}", about=about)
@@ -360,7 +313,7 @@ MAPS: Mapping[str, Callable[..., "xr.Dataset"]] = MappingProxyType(
         "frequency-amplitude": frequency_amplitude_map,
     }
 )
-"""Functions that compute a map, by its kind; each takes a rig, the axes of its signature, and a backend."""
+"""Functions that compute a map, by its kind; each takes a rig and the axes of its signature."""
 
 
 def map_kinds(quantity: CommandedQuantity) -> tuple[str, ...]:

@@ -15,7 +15,6 @@ from sonolube.design.sweep_plan import OPERATING_CONDITIONS, SweepPlan
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.execution.threads import thread_pool
 from sonolube.extras import EXTRAS, missing_package
-from sonolube.models.dynamics.backend import Backend, device_name, usable_backend
 from sonolube.models.friction import SINE_TOLERANCE
 from sonolube.rig import NUMBERS, STATUSES, PointBatch, point_batch
 from sonolube.rig.operating_conditions import REFUSED
@@ -43,7 +42,6 @@ def sweep(
     workers: int = 1,
     scheduler: str | None = None,
     advance: ProgressCallback | None = None,
-    backend: Backend = "cpu",
 ) -> "xr.Dataset":
     """Operating points of a rig at every point of a plan, with a status for each.
 
@@ -61,8 +59,6 @@ def sweep(
         Address of a Dask scheduler, or "local" for a cluster of processes on this machine; needs the extra `cluster`.
     advance : callable, optional
         Called with the number of finished points and their total.
-    backend : {"cpu", "gpu"}
-        Whether JAX computes the vibrations on its GPU; its name is then the attribute `device`.
 
     Returns
     -------
@@ -76,11 +72,6 @@ def sweep(
         If the folder holds another sweep or another process sweeps into it, the disk is full,
         or Dask is missing.
 
-    Warns
-    -----
-    GpuUnused
-        If a GPU was requested and none can be used.
-
     See Also
     --------
     grid_plan, list_plan, latin_hypercube_plan, compute_points
@@ -89,25 +80,20 @@ def sweep(
     -----
     A point without a result does not end the sweep: it has a status, a reason and NaN. Each chunk depends on its own
     points alone, so threads, clusters and interruptions change no bit of the result. Another chunk size groups points
-    into other simultaneous solves and changes the result by less than 1e-6, as does a GPU, whose sweeps therefore have
-    folders of their own. Friction ratios of asperity stick-slip are those of a single point up to 200,000 points,
-    within 1e-4 of them beyond.
+    into other simultaneous solves and changes the result by less than 1e-6. Friction ratios of asperity stick-slip
+    are those of a single point up to 200,000 points, within 1e-4 of them beyond.
     """
     if chunk_points < 1 or workers < 1:
         raise InvalidInput(f"chunk_points and workers must be at least 1, got {chunk_points} and {workers}")
     if scheduler is not None and not EXTRAS["cluster"].is_installed:
         raise missing_package("cluster", remedy="leave the scheduler out")
-    backend = usable_backend(backend)
-    device, store = device_name(backend), None
+    store = None
     if folder is not None:
-        digest = plan.digest + ("-gpu" if device else "")
-        store = ChunkStore(folder=Path(folder), digest=digest, chunk_points=chunk_points)
+        store = ChunkStore(folder=Path(folder), digest=plan.digest, chunk_points=chunk_points)
     count = -(-plan.points // chunk_points)
     with (
         nullcontext() if store is None else store.opened(),
-        nullcontext(MemoryDatasetWriter(plan, device))
-        if store is None
-        else NetCDFDatasetWriter(plan, store.folder, device) as writer,
+        nullcontext(MemoryDatasetWriter(plan)) if store is None else NetCDFDatasetWriter(plan, store.folder) as writer,
     ):
         done = 0
         missing = []
@@ -122,7 +108,7 @@ def sweep(
             advance(done, plan.points)
         with _executor(workers, scheduler, few_points=plan.points <= _FEW_POINTS) as pool:
             for chunk, batch in _computed_chunks(
-                pool, partial(compute_points, plan, backend=backend), plan.points, missing, chunk_points, 2 * workers
+                pool, partial(compute_points, plan), plan.points, missing, chunk_points, 2 * workers
             ):
                 if store is not None:
                     store.write(chunk, batch)
@@ -133,7 +119,7 @@ def sweep(
         return writer.dataset()
 
 
-def compute_points(plan: SweepPlan, start: int, stop: int, *, backend: Backend = "cpu") -> PointBatch:
+def compute_points(plan: SweepPlan, start: int, stop: int) -> PointBatch:
     """Operating points of a contiguous range of a plan.
 
     Parameters
@@ -141,8 +127,6 @@ def compute_points(plan: SweepPlan, start: int, stop: int, *, backend: Backend =
     plan : SweepPlan
     start, stop : int
         First flat index, and that after the last.
-    backend : {"cpu", "gpu"}
-        Whether JAX computes the vibrations on its GPU.
 
     Returns
     -------
@@ -155,13 +139,13 @@ def compute_points(plan: SweepPlan, start: int, stop: int, *, backend: Backend =
     for members in _points_by_rig(rig_entries, stop - start):
         changes = {key: array[members[0]] for key, array in rig_entries.items()}
         own = {name: array[members] for name, array in conditions.items()}
-        parts.append(_points_of_one_rig(plan, changes, own, members.size, backend))
+        parts.append(_points_of_one_rig(plan, changes, own, members.size))
         indices.append(members)
     return _merged(parts, indices, stop - start)
 
 
 def _points_of_one_rig(
-    plan: SweepPlan, changes: dict[str, Any], conditions: dict[str, NDArray[Any]], count: int, backend: Backend
+    plan: SweepPlan, changes: dict[str, Any], conditions: dict[str, NDArray[Any]], count: int
 ) -> PointBatch:
     """Operating points of one rig; all refused where the changes describe no rig."""
     try:
@@ -177,7 +161,7 @@ def _points_of_one_rig(
         conditions = {"sliding_speed": np.full(count, rig.sliding_speed)}
     tolerance = _FINE if plan.points <= _FINE_POINTS else SINE_TOLERANCE
     settings: dict[str, Any] = conditions
-    return point_batch(rig, **settings, backend=backend, friction_tolerance=tolerance)
+    return point_batch(rig, **settings, friction_tolerance=tolerance)
 
 
 def _points_by_rig(rig_entries: dict[str, NDArray[Any]], count: int) -> list[NDArray[np.intp]]:

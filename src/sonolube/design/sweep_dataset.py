@@ -47,16 +47,14 @@ class MemoryDatasetWriter:
     Parameters
     ----------
     plan : SweepPlan
-    device : str
-        Name of the GPU that was used, or empty.
 
     See Also
     --------
     NetCDFDatasetWriter
     """
 
-    def __init__(self, plan: SweepPlan, device: str = "") -> None:
-        self._plan, self._device, self._reasons = plan, device, _ReasonTable()
+    def __init__(self, plan: SweepPlan) -> None:
+        self._plan, self._reasons = plan, _ReasonTable()
         self._columns: dict[str, NDArray[Any]] = {name: np.empty(plan.points) for name in NUMBERS}
         self._columns |= {name: np.empty(plan.points, dtype=kind) for name, kind in _CODES.items()}
 
@@ -79,7 +77,7 @@ class MemoryDatasetWriter:
         }
         texts = np.array(list(self._reasons.code_of), dtype=np.str_)
         variables["reason_text"] = ("reasons", texts, _labels("reason_text"))
-        return xr.Dataset(variables, coords=_coordinates(self._plan), attrs=_attributes(self._plan, self._device))
+        return xr.Dataset(variables, coords=_coordinates(self._plan), attrs=_attributes(self._plan))
 
 
 class NetCDFDatasetWriter:
@@ -90,16 +88,14 @@ class NetCDFDatasetWriter:
     plan : SweepPlan
     folder : Path
         Folder of the file.
-    device : str
-        Name of the GPU that was used, or empty.
 
     See Also
     --------
     MemoryDatasetWriter
     """
 
-    def __init__(self, plan: SweepPlan, folder: Path, device: str = "") -> None:
-        self._plan, self._path, self._device, self._reasons = plan, folder / "sweep.nc", device, _ReasonTable()
+    def __init__(self, plan: SweepPlan, folder: Path) -> None:
+        self._plan, self._path, self._reasons = plan, folder / "sweep.nc", _ReasonTable()
 
     def __enter__(self) -> Self:
         import h5netcdf
@@ -120,7 +116,7 @@ class NetCDFDatasetWriter:
     def _define_variables(self) -> None:
         """Write the coordinates, and define the variables of the points."""
         self._file.dimensions = dict(zip(_dimensions(self._plan), self._plan.shape, strict=True))
-        self._file.attrs.update(_attributes(self._plan, self._device))
+        self._file.attrs.update(_attributes(self._plan))
         for name, (dimension, array, attributes) in _coordinates(self._plan).items():
             self._write_variable(name, (dimension,), array, attributes)
         for name in (*NUMBERS, *_CODES):
@@ -191,8 +187,8 @@ def _coordinates(plan: SweepPlan) -> dict[str, tuple[str, NDArray[Any], dict[str
     }
 
 
-def _attributes(plan: SweepPlan, device: str) -> dict[str, str]:
-    """Attributes of the dataset: title, rig, program version, digest of the plan and device."""
+def _attributes(plan: SweepPlan) -> dict[str, str]:
+    """Attributes of the dataset: title, rig, program version, and digest of the plan."""
     title = str(plan.content["title"])
     attributes = {
         "result": "sweep",
@@ -206,7 +202,7 @@ def _attributes(plan: SweepPlan, device: str) -> dict[str, str]:
     if (rig := plan.own_rig()) is not None:
         attributes |= amplitude_labels(rig)
         attributes["caveats"] = "\n".join(operating_caveats(rig))
-    return attributes | ({"device": device} if device else {})
+    return attributes
 
 
 def _labels(name: str) -> dict[str, Any]:

@@ -17,7 +17,6 @@ from sonolube.models.actuator.drive import Drive
 from sonolube.models.actuator.stack import require_allowed_voltage
 from sonolube.models.contact import ContactMotion, separation
 from sonolube.models.dynamics import Status, SteadyStates, steady_state
-from sonolube.models.dynamics.backend import Backend
 from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE
 from sonolube.rig.driven_rig import NO_DISSIPATED_POWER, require_drive
 from sonolube.rig.friction_and_wear import ANY_FREQUENCY, prescribed_sine
@@ -267,11 +266,7 @@ VibrationAt = Callable[[int], PointVibration]
 
 
 def steady_states_of(
-    resolved: ResolvedRig,
-    columns: Sequence[Floats] | Floats,
-    rest: Floats,
-    backend: Backend = "cpu",
-    relative_tolerance: float = 1e-6,
+    resolved: ResolvedRig, columns: Sequence[Floats] | Floats, rest: Floats, relative_tolerance: float = 1e-6
 ) -> SteadyStates:
     """Steady vibrations of a rig under drives and loads, rows by `CONDITIONS`, given the separations at rest."""
     volts, offset, f, load = columns
@@ -284,18 +279,17 @@ def steady_states_of(
         voltage_offset=offset,
         separation=rest,
         relative_tolerance=relative_tolerance,
-        backend=backend,
     )
 
 
-def computed_vibrations(resolved: ResolvedRig, distinct: Floats, backend: Backend) -> VibrationAt:
+def computed_vibrations(resolved: ResolvedRig, distinct: Floats) -> VibrationAt:
     """Function that gives the vibration of each drive and load, all solved at once."""
     rest = separation(resolved.rig.contact, normal_load=distinct[-1])
     refusals = _refusals(resolved, distinct, rest)
     possible = np.array([not text for text in refusals], dtype=bool)
     states = None
     if possible.any():
-        states = steady_states_of(resolved, distinct[:, possible], rest[possible], backend)
+        states = steady_states_of(resolved, distinct[:, possible], rest[possible])
     load = {} if states is None else electrical_load(states)
     place = np.cumsum(possible) - 1
 

@@ -10,7 +10,6 @@ from sonolube.checks import Floats
 from sonolube.errors import SonolubeError
 from sonolube.models.contact import GapMotionBatch, separation
 from sonolube.models.dynamics import Status, SteadyStates
-from sonolube.models.dynamics.backend import Backend
 from sonolube.models.dynamics.kernels.simd import peak_velocities
 from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, checked_ratio
 from sonolube.rig import operating_conditions as conditions, operating_point_grid as grid
@@ -82,7 +81,6 @@ def point_batch(
     normal_load: ArrayLike | None = None,
     sliding_speed: ArrayLike | None = None,
     vibration_amplitude: ArrayLike | None = None,
-    backend: Backend = "cpu",
     friction_tolerance: float = 1e-7,
 ) -> PointBatch:
     """Operating points of a rig in a very large batch; settings that are absent are the rig's own.
@@ -103,8 +101,6 @@ def point_batch(
         Macroscopic relative speed. [m/s]
     vibration_amplitude : array_like, optional
         Amplitude of the sine at any frequency, of a rig without a drive voltage. [m]
-    backend : {"cpu", "gpu"}
-        Whether JAX solves the vibrations on its GPU.
     friction_tolerance : float
         Largest error of a friction ratio by the batched form of a friction model; 8e-5 is five times as fast.
 
@@ -117,11 +113,6 @@ def point_batch(
     ------
     InvalidInput
         If the rig has no amplitude, a setting has no meaning or shapes do not match.
-
-    Warns
-    -----
-    GpuUnused
-        If a GPU was requested and none can be used.
 
     Notes
     -----
@@ -146,7 +137,7 @@ def point_batch(
     friction = _no_friction(speeds.size)
     possible = np.flatnonzero(refusal == 0)
     if possible.size:
-        states = steady_states_of(resolved, distinct[:, possible], rest[possible], backend)
+        states = steady_states_of(resolved, distinct[:, possible], rest[possible])
         status[possible] = states.status
         reason[possible] = states.status
         numbers[:, possible] = _measures(states)

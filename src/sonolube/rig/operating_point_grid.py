@@ -9,7 +9,6 @@ from numpy.typing import ArrayLike, NDArray
 from sonolube.checks import Floats
 from sonolube.models.contact import separation
 from sonolube.models.dynamics import SteadyStates
-from sonolube.models.dynamics.backend import Backend
 from sonolube.models.friction.models.range_check import OUTSIDE_MODEL_RANGE
 from sonolube.rig.friction_and_wear import friction_at_speeds
 from sonolube.rig.operating_conditions import (
@@ -140,7 +139,6 @@ def operating_points(
     sliding_speed: ArrayLike | None = None,
     vibration_amplitude: ArrayLike | None = None,
     advance: Advance | None = None,
-    backend: Backend = "cpu",
 ) -> OperatingPoints:
     """Operating points of a rig over arrays of settings; settings that are absent are the rig's own.
 
@@ -162,8 +160,6 @@ def operating_points(
         Amplitude of the sine at any frequency, of a rig without a drive voltage. [m]
     advance : callable, optional
         Called with the number of vibrations done, and of all.
-    backend : {"cpu", "gpu"}
-        Whether JAX solves the vibrations on its GPU.
 
     Returns
     -------
@@ -174,11 +170,6 @@ def operating_points(
     InvalidInput
         If the rig has no amplitude, a setting has no meaning or shapes do not match.
         Not for a point that is impossible, which has its status.
-
-    Warns
-    -----
-    GpuUnused
-        If a GPU was requested and none can be used.
 
     Notes
     -----
@@ -195,7 +186,7 @@ def operating_points(
     if used.driven is None:
         vibration_at = stated_vibrations(resolved, distinct, commanded=commanded)
     else:
-        vibration_at = computed_vibrations(resolved, distinct, backend)
+        vibration_at = computed_vibrations(resolved, distinct)
 
     status, reason = np.full((2, speeds.size), REFUSED, dtype=object)
     numbers = np.full((len(VIBRATION_NUMBERS) + 3, speeds.size), np.nan)

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from pathlib import Path
 from types import NoneType, UnionType
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol, TypeAlias, TypedDict, Union, get_args, get_origin
+from typing import TYPE_CHECKING, Annotated, Any, Protocol, TypeAlias, TypedDict, Union, get_args, get_origin
 
 from sonolube.tasks.files import InputFile, NamedBytes, file_path
 from sonolube.tasks.progress import Cancelled, Progress
@@ -142,10 +142,6 @@ class Watched(TypedDict, total=False):
 Keep = Annotated[Kept | None, DoorParameter()]
 Pin = Annotated[str | None, Parameter("Material of the pin, for the heat; by default the rig's.", "MATERIAL")]
 Disc = Annotated[str | None, Parameter("Material of the disc, for the heat; by default the rig's.", "MATERIAL")]
-Backend = Annotated[
-    Literal["cpu", "gpu"],
-    Parameter("Processor for the steady vibrations; gpu needs JAX and a GPU that it can use, and falls back to cpu."),
-]
 Interval = Annotated[bool, Parameter("State the error of the friction model, and the interval with it.")]
 Sizes = Annotated[
     Mapping[str, str | float] | None,

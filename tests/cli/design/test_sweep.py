@@ -8,8 +8,6 @@ import pytest
 import xarray as xr
 from pytest import approx
 
-from sonolube.models.dynamics import backend
-
 Program = Callable[..., Any]
 VOLTS = "drive.voltage_peak_to_peak"
 
@@ -43,19 +41,6 @@ def test_a_sweep_says_which_power_is_which_as_the_simulation_of_its_best_point_d
     assert "capacitance alone" in (tmp_path / "sweep" / "sweep.html").read_text(encoding="utf-8")
     ends = ("--from", "14V", "--to", "28V", "--points", "2", "--json", "--out", tmp_path / "study")
     assert sonolube("sweep", path, "--of", "voltage", *ends).answer["least_friction"][0]["energy_balance"] == told
-
-
-@pytest.mark.parametrize("command", ["sweep", "map"])
-def test_without_a_gpu_one_line_says_that_the_cpu_is_used(
-    command: str, tmp_path: Path, sonolube: Program, rigs: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(backend, "_gpu", lambda: ("", "JAX finds no GPU"))
-    over = ("--over", f"{VOLTS}=10V,20V")
-    more = ("--over", "sliding.sliding_speed=10mm/s,20mm/s", "--form", "png") if command == "map" else ()
-    run = sonolube(command, rigs / "tribometer.toml", *over, *more, "--backend", "gpu", "--out", tmp_path)
-    assert run.code == 0
-    assert run.err.count("\n") == 1
-    assert run.err.startswith("backend gpu: computed on the CPU: ")
 
 
 def test_a_latin_hypercube_has_as_many_points_as_asked_for(tmp_path: Path, sonolube: Program, rigs: Path) -> None:

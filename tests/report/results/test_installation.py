@@ -24,8 +24,6 @@ def whole(tmp_path: Path) -> results.Installation:
     return results.Installation(
         packages={"numpy": "2.0", "scipy": "1.14"},
         extras=dict.fromkeys(EXTRAS, False),
-        gpu="",
-        gpu_obstacle="no driver",
         cache_folder=tmp_path / "cache" / "inner",
         cache_was_warm=True,
         programs={"C compiler": "/usr/bin/cc", "CalculiX": ""},
@@ -44,9 +42,7 @@ def test_a_whole_installation_is_healthy_and_says_what_each_part_is(whole: resul
     assert whole.healthy
     blocks = whole.blocks()
     assert rows_after(blocks, "required packages") == {"numpy": "2.0", "scipy": "1.14"}
-    assert rows_after(blocks, "processors and compiled code") == {
-        "GPU": "none: no driver", "compiled code": f"{whole.cache_folder}, warm",
-    }  # fmt: skip
+    assert rows_after(blocks, "compiled code") == {"folder": f"{whole.cache_folder}, warm"}
     assert rows_after(blocks, "other programs") == {
         "C compiler": "/usr/bin/cc (compiles what control exports)",
         "CalculiX": "not found: apt-get install calculix-ccx (compared with by tests and benchmarks only)",
@@ -69,11 +65,10 @@ def test_what_is_missing_makes_an_installation_ill_and_has_its_remedy(
     assert rows_after(missing.blocks(), "required packages")["scipy"] == "missing: pip install scipy"
     monkeypatch.setattr(results, "_is_writable", lambda folder: False)
     assert not whole.healthy
-    cold = replace(whole, cache_was_warm=False, gpu="H200")
-    assert rows_after(cold.blocks(), "processors and compiled code") == {
-        "GPU": "H200",
-        "compiled code": f"{whole.cache_folder}, was cold: the first computation compiled for some 20 s;"
-        " not writable: set NUMBA_CACHE_DIR to a folder that is",
+    cold = replace(whole, cache_was_warm=False)
+    assert rows_after(cold.blocks(), "compiled code") == {
+        "folder": f"{whole.cache_folder}, was cold: the first computation compiled for some 20 s;"
+        " not writable: set NUMBA_CACHE_DIR to a folder that is"
     }
 
 
@@ -89,7 +84,6 @@ def test_an_installation_in_json_has_null_for_what_is_missing(whole: results.Ins
     found = replace(whole, packages={"numpy": "2.0", "scipy": ""}).object()
     assert found["packages"] == {"numpy": "2.0", "scipy": None}
     assert found["programs"] == {"C compiler": "/usr/bin/cc", "CalculiX": None}
-    assert found["gpu"] == {"name": None, "reason": "no driver"}
     assert found["compiled_code"] == {"folder": str(whole.cache_folder), "writable": True, "warm": True}
     assert found["extras"][NAME] == {
         "installed": False, "command": EXTRAS[NAME].command, "obstacle": EXTRAS[NAME].obstacle or None,
@@ -109,16 +103,15 @@ def test_the_state_is_found_with_every_self_check_made_and_told(monkeypatch: Mon
     monkeypatch.setattr(results, "SELF_CHECKS", (Check(), Check()))
     monkeypatch.setattr(results, "which", lambda name: f"/bin/{name}" if name in ("gcc", "clang") else None)
     monkeypatch.setattr(results, "is_compiled", lambda: True)
-    for name, value in (("device_name", ""), ("known_drivers", {}), ("required_packages", {})):
-        monkeypatch.setattr(results, name, lambda *_, value=value: value)
-    monkeypatch.setattr(results, "gpu_obstacle", lambda: "none here")
+    for name in ("known_drivers", "required_packages"):
+        monkeypatch.setattr(results, name, lambda *_: {})
     told: list[tuple[str, int, int]] = []
     found = results.installation(lambda *each: told.append(each))
     assert told == [("closed form", 0, 2), ("closed form", 1, 2)]
     assert len(found.checks) == 2
     assert found.programs["C compiler"] == "/bin/gcc"
     assert found.programs["CalculiX"] == ""
-    assert (found.cache_was_warm, found.gpu_obstacle) == (True, "none here")
+    assert found.cache_was_warm
 
 
 def test_code_can_be_kept_below_the_nearest_folder_that_exists(tmp_path: Path, whole: results.Installation) -> None:

@@ -1,16 +1,12 @@
-"""Option `--style` of all commands that draw figures, the warning that a GPU is not used, and literal help texts."""
+"""Option `--style` of all commands that draw figures, and literal help texts."""
 
 import os
 import re
-import warnings
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import wraps
 from inspect import Parameter, signature
 from pathlib import Path
 from typing import Any, get_type_hints
-
-import typer
 
 from sonolube.cli.console.options import FigureStyleName, OutputFolder, Style, output_marks
 
@@ -65,22 +61,6 @@ def _is_writable(folder: Path) -> bool:
     """Whether a folder, or the parent in which it would be made, can be written to."""
     present = next((each for each in (folder, *folder.parents) if each.exists()), Path())
     return present.is_dir() and os.access(present, os.W_OK)
-
-
-@contextmanager
-def gpu_warning() -> Iterator[None]:
-    """Print the warning that a GPU is not used as one line on standard error; pass other warnings on."""
-    from sonolube.errors import GpuUnused
-
-    with warnings.catch_warnings(record=True) as raised:
-        warnings.simplefilter("always", GpuUnused)
-        yield
-    unused = [str(each.message) for each in raised if issubclass(each.category, GpuUnused)]
-    for text in dict.fromkeys(unused):
-        typer.echo(f"backend gpu: {text}", err=True)
-    for each in raised:
-        if not issubclass(each.category, GpuUnused):
-            warnings.warn_explicit(each.message, each.category, each.filename, each.lineno, source=each.source)
 
 
 _TAG = re.compile(r"(\\*)\[(?=[a-z#/@])")  # what rich takes for markup, such as [m/s]

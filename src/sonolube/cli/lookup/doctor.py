@@ -9,7 +9,7 @@ from sonolube.tasks.answer import Listing
 
 
 def doctor(json: Json = False) -> None:
-    """State of the installation: versions, optional parts, GPU, compiled code, programs, and a self-check.
+    """State of the installation: versions, optional parts, compiled code, programs, and a self-check.
 
     Ends with exit code 0 if all self-checks pass and compiled code can be kept, else with 1.
 

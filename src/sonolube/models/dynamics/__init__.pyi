@@ -5,7 +5,6 @@ from .attractor import (
     classify_attractor as classify_attractor,
     settling_time as settling_time,
 )
-from .backend import Backend as Backend
 from .chain import (
     GROUND as GROUND,
     Damper as Damper,

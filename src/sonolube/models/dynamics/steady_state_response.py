@@ -16,7 +16,6 @@ from sonolube.checks import (
 )
 from sonolube.errors import InvalidInput
 from sonolube.execution.threads import map_chunks
-from sonolube.models.dynamics.backend import Backend, usable_backend
 from sonolube.models.dynamics.gap_laws.closed_form import GapLaw
 from sonolube.models.dynamics.gap_laws.table import kernel_law
 from sonolube.models.dynamics.harmonic_balance.batch import BatchProblem, BatchSolution, concatenate
@@ -42,7 +41,6 @@ def steady_state(
     relative_tolerance: float = 1e-6,
     stability: bool = True,
     workers: int = 1,
-    backend: Backend = "cpu",
 ) -> SteadyStates:
     r"""Periodic steady-state vibration of a structure against its contact, by harmonic balance.
 
@@ -76,8 +74,6 @@ def steady_state(
         Whether to compute stability, which takes about as long as the vibration itself.
     workers : int
         Number of threads of the CPU.
-    backend : {"cpu", "gpu"}
-        Whether JAX solves the equations and computes stability on its GPU; without one the CPU does, with a warning.
 
     Returns
     -------
@@ -89,11 +85,6 @@ def steady_state(
     InvalidInput
         If a frequency or load is not positive, a value not finite, the drive not given in exactly one way, there are no
         points, or `minimum_harmonics` or `relative_tolerance` is out of its range.
-
-    Warns
-    -----
-    GpuUnused
-        If a GPU was requested and none can be used.
 
     See Also
     --------
@@ -154,7 +145,6 @@ def steady_state(
         upper_branch=upper_branch,
         stability=stability,
         tolerance=relative_tolerance,
-        on_gpu=usable_backend(backend) == "gpu",
     )
     solution = _solve(problem, workers)
     orders = np.arange(1, problem.voltage.shape[1] + 1)

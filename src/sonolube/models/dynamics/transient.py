@@ -14,7 +14,7 @@ from sonolube.models.dynamics.time_marching.batch import (
     MarchingSchedule,
     MarchingSolution,
     assess_steps,
-    march_on_cpu,
+    march_on_threads,
 )
 from sonolube.models.dynamics.waveform import Sine, StartUpRamp, Waveform, drive_voltage, ramp_factor
 
@@ -114,7 +114,7 @@ def march(
             strobed=strobed_periods,
         ),
     )
-    solution = march_on_cpu(problem, workers)
+    solution = march_on_threads(problem, workers)
     status, advice, step_error = assess_steps(problem, solution)
     return Trajectories(
         status=status.reshape(shape),
@@ -187,7 +187,7 @@ def trajectory(
     problem, shape = _problem(structure, gap_law, point, initial_state, schedule)
     if shape:
         raise InvalidInput(f"trajectory takes one point, got {problem.frequency.size}; march takes many")
-    solution = march_on_cpu(problem, workers=1)
+    solution = march_on_threads(problem, workers=1)
     status, advice, _ = assess_steps(problem, solution)
     states = np.concatenate([problem.start[np.newaxis, :, :1], solution.recorded[:, :-1]])
     time = np.arange(states.shape[0]) / (frequency * steps_per_period)

@@ -12,7 +12,6 @@ from typing import Any
 import sonolube
 from sonolube.extras import EXTRAS, installed_version, required_packages
 from sonolube.laboratory.drivers import known_drivers
-from sonolube.models.dynamics.backend import device_name, gpu_obstacle
 from sonolube.models.dynamics.warm_up import compiled_code_folder, is_compiled
 from sonolube.reference_solutions.self_checks import SELF_CHECKS
 from sonolube.report.blocks import Block, Rows
@@ -34,8 +33,6 @@ class Installation:
         Versions of the required packages; empty where one is missing.
     extras : mapping of str to bool
         Whether each optional part is installed.
-    gpu, gpu_obstacle : str
-        Name of the processor, or why there is none.
     cache_folder : Path
         Of compiled code.
     cache_was_warm : bool
@@ -49,8 +46,6 @@ class Installation:
 
     packages: Mapping[str, str]
     extras: Mapping[str, bool]
-    gpu: str
-    gpu_obstacle: str
     cache_folder: Path
     cache_was_warm: bool
     programs: Mapping[str, str]
@@ -77,8 +72,8 @@ class Installation:
             Rows([(name, found or f"missing: pip install {name}") for name, found in self.packages.items()]),
             "optional parts",
             Rows([(name, self._extra(name)) for name in self.extras]),
-            "processors and compiled code",
-            Rows([("GPU", self.gpu or f"none: {self.gpu_obstacle}"), ("compiled code", self._cache())]),
+            "compiled code",
+            Rows([("folder", self._cache())]),
             "other programs",
             Rows([(name, self._program(name)) for name in self.programs]),
             "drivers of devices",
@@ -106,7 +101,6 @@ class Installation:
                 }
                 for name, installed in self.extras.items()
             },
-            "gpu": {"name": self.gpu or None, "reason": self.gpu_obstacle},
             "compiled_code": {
                 "folder": str(self.cache_folder),
                 "writable": self.cache_is_writable,
@@ -153,8 +147,6 @@ def installation(advance: Callable[[str, int, int], None]) -> Installation:
     return Installation(
         packages=required_packages(),
         extras={name: extra.is_installed for name, extra in EXTRAS.items()},
-        gpu=device_name("gpu"),
-        gpu_obstacle=gpu_obstacle(),
         cache_folder=compiled_code_folder(),
         cache_was_warm=warm,
         programs={name: _found(names) for name, (names, _, _) in _PROGRAMS.items()},

@@ -23,7 +23,7 @@ from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, commanded_quantity, operating_
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 from sonolube.tasks.design.chances import CONFIDENCE, TARGET_REDUCTION, target_chance
 from sonolube.tasks.own_tables import MappedRuns, Values, refuse_replaced, runs_of, values_by_key
-from sonolube.tasks.parameters import Backend, File, KeyValues, Number, Parameter, RigFile, RunsSource, Watched, rig_of
+from sonolube.tasks.parameters import File, KeyValues, Number, Parameter, RigFile, RunsSource, Watched, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import shown, task
 
@@ -71,7 +71,6 @@ def map(  # noqa: A001 - the command's name
         Sequence[Literal["png", "pdf", "svg", "html"]],
         Parameter("png, pdf, svg or an interactive html; may come again."),
     ] = (),
-    backend: Backend = "cpu",
     **watch: Unpack[Watched],
 ) -> "MapAnswer":
     """Map of friction reduction: over sliding speed or frequency, and stress, power, voltage or vibration amplitude.
@@ -93,7 +92,7 @@ def map(  # noqa: A001 - the command's name
     if measured is not None:
         require_mappable(measured, kind=chosen, commanded=commanded_quantity(known))
     with stage("mapping"):
-        mapped = design.MAPS[chosen](known, **axes, backend=backend)
+        mapped = design.MAPS[chosen](known, **axes)
     target, wanted = target_chance(target_reduction, confidence)
     if target is not None:
         with stage("chances"):

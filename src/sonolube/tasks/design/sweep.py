@@ -19,7 +19,6 @@ from sonolube.checks import Floats, require_positive
 from sonolube.design import SweepPlan, grid_plan, latin_hypercube_plan, list_plan, sweep_chart, swept_variables
 from sonolube.design.point_statistics import failure_counts
 from sonolube.errors import InvalidInput
-from sonolube.models.dynamics.backend import usable_backend
 from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.report import Drawing, Page
 from sonolube.report.results.design import sweep as results
@@ -29,7 +28,7 @@ from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.storage.files import expect_files
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 from sonolube.tasks.own_tables import Values, ends_by_key, refuse_replaced, values_by_key
-from sonolube.tasks.parameters import Backend, Keep, KeyValues, Parameter, RigFile, Watched, kept, rig_of
+from sonolube.tasks.parameters import Keep, KeyValues, Parameter, RigFile, Watched, kept, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import refuse_unused, shown, task
 from sonolube.text.units import format_si, to_si
@@ -234,7 +233,7 @@ _CLOUD_CAPTION = (
     " and the interval of 90 %."
 )
 # arguments without meaning for one quantity
-_OVER_ONLY = ("sample", "seed", "workers", "scheduler", "chunk", "backend")
+_OVER_ONLY = ("sample", "seed", "workers", "scheduler", "chunk")
 _FILES = ("sweep.nc", "sweep.json", "sweep.html", "sweep.png", "sweep.svg", "sweep.pdf")
 _OF_ONLY = ("lowest", "highest", "voltage", "vibration")  # arguments without meaning for keys
 
@@ -270,7 +269,6 @@ def sweep(
         str | None, Parameter("Dask scheduler, or local for processes on this machine.", "ADDRESS")
     ] = None,
     chunk: Annotated[int, Parameter("Points computed and kept together.", lowest=1)] = 100_000,
-    backend: Backend = "cpu",
     keep: Keep = None,
     **watch: Unpack[Watched],
 ) -> "SweepAnswer | ParametricStudyAnswer":
@@ -304,8 +302,7 @@ def sweep(
     if scheduler not in (None, "local"):
         refuse_unused("workers", because=f"for a {shown('scheduler')} at an address, which has its own")
     plan = _plan(known, over or {}, sample, points, seed)
-    chosen = usable_backend(backend)
-    folder = kept(keep, f"{known.name}-sweep-{plan.digest[:8]}{'-gpu' if chosen == 'gpu' else ''}")
+    folder = kept(keep, f"{known.name}-sweep-{plan.digest[:8]}")
     if folder is not None:
         expect_files(folder, _FILES)
     with stage("sweeping") as advance:
@@ -313,7 +310,6 @@ def sweep(
             plan,
             folder=folder,
             advance=lambda done, total: advance("points", done, total),
-            backend=chosen,
             chunk_points=chunk,
             workers=workers,
             scheduler=scheduler,

@@ -38,7 +38,6 @@ def test_mean_and_amplitude_on_a_grounded_structure_satisfy_the_equations_of_a_s
         upper_branch=False,
         stability=False,
         tolerance=1e-6,
-        on_gpu=False,
     )
     guess = initial_guess(problem, free, upper_branch=False)
     amplitude, mean = np.abs(guess.harmonic), guess.mean

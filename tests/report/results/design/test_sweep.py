@@ -172,7 +172,7 @@ SWEPT = xr.Dataset(
         "status": ("point", [0, 1, 0, 0], {"flag_meanings": "stable failed"}),
         "reason": ("point", ["", "too fast", "", ""]),
     },
-    attrs={"rig": "Own rig", "title": "Sweep of own", "device": "GPU"},
+    attrs={"rig": "Own rig", "title": "Sweep of own"},
 )
 PLAN: Any = SimpleNamespace(
     content={"source": "measured"},
@@ -192,12 +192,11 @@ LEAST = [
 
 def test_a_sweep_in_words_has_points_by_status_failures_and_the_point_of_least_friction() -> None:
     head, rows, failed, word, least = results.sweep_blocks(RIG, PLAN, SWEPT)
-    assert head == "Own rig, 4 points, on GPU"
+    assert head == "Own rig, 4 points"
     assert rows == Rows([("amplitude", "stated"), ("stable", "3"), ("failed", "1")])
     assert failed == "  without result: 1: too fast"
     assert (word, least) == ("least friction", Rows(LEAST))
     plain = SWEPT.assign_attrs(rig="Own rig")
-    del plain.attrs["device"]
     nothing = plain.assign(friction_ratio=("point", np.full(4, NAN)))
     assert results.sweep_blocks(RIG, PLAN, nothing)[0] == "Own rig, 4 points"
     assert "least friction" not in results.sweep_blocks(RIG, PLAN, nothing)
@@ -207,7 +206,7 @@ def test_a_sweep_in_words_has_points_by_status_failures_and_the_point_of_least_f
 def test_a_sweep_in_json_has_the_values_of_keys_and_the_outcomes_that_are_known() -> None:
     found = results.sweep_object(RIG, PLAN, SWEPT)
     assert found == {
-        "rig": "Own rig", "amplitude_source": "file", "amplitude_origin": "stated", "device": "GPU", "points": 4,
+        "rig": "Own rig", "amplitude_source": "file", "amplitude_origin": "stated", "points": 4,
         "statuses": {"stable": 3, "failed": 1}, "without_result": [{"reason": "too fast", "points": 1}],
         "least_friction": {
             "drive.voltage_peak_to_peak": 20.0, "drive.waveform": "square",

@@ -25,7 +25,6 @@ class BatchProblem(NamedTuple):
     upper_branch: bool  # whether to return the larger of coexisting vibrations
     stability: bool  # whether to compute stability
     tolerance: float  # largest relative error of amplitude and force
-    on_gpu: bool  # whether JAX solves on its GPU
 
     def select(self, points: NDArray[np.intp] | slice) -> "BatchProblem":
         """Problem of some of the points."""

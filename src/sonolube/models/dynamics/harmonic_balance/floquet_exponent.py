@@ -103,8 +103,6 @@ def floquet_exponents(
     harmonics: Complexes,
     count: Integers,
     samples: Integers,
-    *,
-    on_gpu: bool = False,
 ) -> Floats:
     r"""Largest Floquet exponent of each motion, per period of the drive.
 
@@ -127,12 +125,7 @@ def floquet_exponents(
     pairs = np.hstack([model.contact_input, model.displacement_output, model.velocity_output])
     powers, norms = np.empty((2, omega.size))
     equilibrium = gap_law.equilibrium_coordinate(load)
-    if on_gpu:
-        from sonolube.models.dynamics.harmonic_balance import jax_kernels  # an optional package
-
-        settings = np.stack([omega, load, equilibrium, mean], axis=1)
-        powers, norms = jax_kernels.monodromy_power_norms(gap_law, pairs, settings, drift, harmonics, kicks)
-    elif monodromy_power_norms.takes_few(int(kicks.sum()), **_FEW):
+    if monodromy_power_norms.takes_few(int(kicks.sum()), **_FEW):
         settings = np.stack([omega, load, mean], axis=1)
         with np.errstate(all="ignore"):
             for own in (np.flatnonzero(kicks == each) for each in np.unique(kicks)):

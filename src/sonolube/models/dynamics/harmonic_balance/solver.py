@@ -87,12 +87,11 @@ def _raise_truncation(truncation: Truncation, harmonics: int) -> None:
 
 def _refine(problem: BatchProblem, iterates: Iterates, truncation: Truncation) -> tuple[Iterates, NDArray[np.bool_]]:
     """Solve all points, those without success again with more harmonics or samples; return which were solved."""
-    newton = _newton_on_gpu if problem.on_gpu else _newton_on_cpu
     outcome = np.full(problem.omega.size, DIVERGED)
     pending = np.arange(outcome.size)
     for attempt in range(_REFINEMENTS):
         iterates = _with_capacity(iterates, int(truncation.harmonics[pending].max(initial=0)))
-        newton(problem, iterates, truncation, pending, _ITERATIONS + 4 * attempt, outcome)
+        _newton(problem, iterates, truncation, pending, _ITERATIONS + 4 * attempt, outcome)
         pending = np.flatnonzero(outcome != CONVERGED)
         pending = pending[_refine_truncation(truncation, pending, outcome[pending])]
         if not pending.size:
@@ -100,7 +99,7 @@ def _refine(problem: BatchProblem, iterates: Iterates, truncation: Truncation) -
     return iterates, outcome == CONVERGED
 
 
-def _newton_on_cpu(
+def _newton(
     problem: BatchProblem, iterates: Iterates, truncation: Truncation, pending: Integers, steps: int, outcome: Integers
 ) -> None:
     """Solve the pending points by the compiled kernel; write their iterates and outcomes."""
@@ -119,15 +118,6 @@ def _newton_on_cpu(
         outcome,
         harmonic_workspace(*finest),
     )
-
-
-def _newton_on_gpu(
-    problem: BatchProblem, iterates: Iterates, truncation: Truncation, pending: Integers, steps: int, outcome: Integers
-) -> None:
-    """Solve the pending points by JAX; write their iterates and outcomes."""
-    from sonolube.models.dynamics.harmonic_balance import jax_kernels  # an optional package
-
-    outcome[pending] = jax_kernels.newton_solve(problem, iterates, truncation, pending, steps)
 
 
 def _refine_truncation(truncation: Truncation, pending: Integers, outcome: Integers) -> NDArray[np.bool_]:
@@ -189,7 +179,7 @@ def _measured(
     measures = response_measures(problem.gap_law, *motion)
     unstable = np.zeros(omega.size, dtype=bool)
     if problem.stability:
-        exponents = floquet_exponents(model, problem.gap_law, *motion, truncation.samples, on_gpu=problem.on_gpu)
+        exponents = floquet_exponents(model, problem.gap_law, *motion, truncation.samples)
         unstable = exponents > STABILITY_THRESHOLD
     charge = (model.clamped_capacitance + _receptances(problem, CHARGE_PER_VOLT)) * problem.voltage
     charge += _receptances(problem, CONTACT_PER_VOLT) * iterates.force_harmonics.view(np.complex128)

@@ -148,7 +148,7 @@ class MarchingSolution:
     step_response: Floats
 
 
-def march_on_cpu(problem: MarchingProblem, workers: int) -> MarchingSolution:
+def march_on_threads(problem: MarchingProblem, workers: int) -> MarchingSolution:
     """Trajectories of a batch by threads of the CPU."""
     if workers < 1:
         raise InvalidInput(f"workers must be at least 1, got {workers!r}")

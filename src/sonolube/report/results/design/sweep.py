@@ -198,10 +198,9 @@ _FORMER = "actuator_power"  # key of the charging power in JSON before it had it
 
 def sweep_blocks(rig: Rig, plan: SweepPlan, result: "xr.Dataset") -> list[Block]:
     """Number of points by status, failures, and the point of least friction."""
-    device = f", on {result.attrs['device']}" if "device" in result.attrs else ""
     least = _least_texts(plan, result)
     return [
-        f"{result.attrs['rig']}, {result['friction_ratio'].size} points{device}",
+        f"{result.attrs['rig']}, {result['friction_ratio'].size} points",
         Rows([*amplitude_rows(rig), *((name, f"{count}") for name, count in status_counts(result).items())]),
         *[f"  without result: {count}: {reason}" for reason, count in _failures(result).items()],
         *(("least friction", Rows(least)) if least else ()),
@@ -213,7 +212,6 @@ def sweep_object(rig: Rig, plan: SweepPlan, result: "xr.Dataset") -> dict[str, A
     return {
         "rig": result.attrs["rig"],
         **amplitude_object(rig),
-        **({"device": str(result.attrs["device"])} if "device" in result.attrs else {}),
         "points": int(result["friction_ratio"].size),
         "statuses": status_counts(result),
         "without_result": failure_objects(_failures(result)),
