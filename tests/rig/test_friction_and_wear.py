@@ -146,15 +146,6 @@ def test_the_half_period_needs_no_frequency_and_other_models_say_that_they_do() 
         friction_point(rig)
 
 
-def test_former_names_are_refused_with_the_present_ones() -> None:
-    with raises(InvalidInput, match=r'friction\.closure: is now friction\.model; write model = "asperity_stick_slip"'):
-        tribometer("friction.closure=stick_slip")
-    with raises(InvalidInput, match=r'friction\.model: "coupled" is now "bristle_with_holder"'):
-        tribometer("friction.model=coupled")
-    with raises(InvalidInput, match=r'contact\.asperity_law: "corrected" is now "chang_etsion_bogy"'):
-        tribometer("contact.asperity_law=corrected")
-
-
 STATED = read_rig(RIGS / "flextensional.toml")  # 0.693 um at 16 kHz under 2.6 N
 
 

@@ -222,11 +222,7 @@ def test_a_model_about_the_gap_at_rest_ends_where_the_amplitude_closes_that_gap(
     assert balanced.range_objection(beyond, 0.5) is None
 
 
-def test_models_are_selected_in_the_order_of_the_list_and_former_names_are_told() -> None:
+def test_models_are_selected_in_the_order_of_the_list() -> None:
     found = compared_models(["kinematic-fitted", "kinematic"])
     assert [model.name for model in found] == ["kinematic", "kinematic-fitted"]
     assert len(compared_models()) > 20
-    for model in compared_models():
-        if model.former_name:
-            with raises(InvalidInput, match=f"model '{model.former_name}' is now '{model.name}'"):
-                compared_models([model.former_name])

@@ -8,10 +8,9 @@ from inspect import Parameter as Argument, Signature, cleandoc, signature
 from math import inf, isfinite
 from numbers import Real
 from types import NoneType
-from typing import Any, Generic, Literal, NoReturn, ParamSpec, TypeVar, get_args, get_origin, get_type_hints, overload
+from typing import Any, Generic, Literal, ParamSpec, TypeVar, get_args, get_origin, get_type_hints, overload
 
 from sonolube.errors import InvalidInput, SonolubeError, UnknownName
-from sonolube.former_names import moved_module
 from sonolube.tasks.answer import Answer
 from sonolube.tasks.files import private_files, with_names_only
 from sonolube.tasks.parameters import Call, File, Mark, Number, Parameter, RigParameter, Watched, members_of
@@ -62,6 +61,8 @@ class TaskFunction(Generic[P, A]):
         Its arguments are annotated by `sonolube.tasks.parameters`.
     """
 
+    __wrapped__: Callable[P, A]
+
     def __init__(self, function: Callable[P, A]) -> None:
         update_wrapper(self, function)
         self._function, self.__signature__ = function, _form(function)
@@ -95,16 +96,11 @@ class TaskFunction(Generic[P, A]):
         object.__setattr__(found, "call", call)
         return found
 
-    def __getattr__(self, name: str) -> NoReturn:
-        """Refuse an attribute, with the place of the module that the task has its name from."""
-        own = self.__dict__.get("__name__", "")
-        raise AttributeError(f"task {own} has no attribute {name!r}{moved_module(own)}")
-
     def __repr__(self) -> str:
-        return f"<task {self.__module__}.{self.__qualname__}>"
+        return f"<task {self.__module__}.{self._function.__qualname__}>"
 
     def __reduce__(self) -> str:
-        return self.__qualname__
+        return self._function.__qualname__
 
 
 def task(function: Callable[P, A]) -> TaskFunction[P, A]:

@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from sonolube.errors import InvalidInput, UnknownName
+from sonolube.errors import UnknownName
 from sonolube.validation.assessment import (
     CHI_SQUARED_95,
     FITTED_SETS,
@@ -175,11 +175,8 @@ class RigPrediction:
 def compared_models(names: Iterable[str] = ()) -> tuple[ModelVariant, ...]:
     """Model variants of some names in the order of `COMPARED_MODELS`; all of them if no name is given."""
     known = {model.name: model for model in COMPARED_MODELS}
-    former = {model.former_name: model.name for model in COMPARED_MODELS if model.former_name}
     selected = list(names)
     for name in selected:
-        if name in former:
-            raise InvalidInput(f"model {name!r} is now {former[name]!r}")
         if name not in known:
             raise UnknownName.among(known, kind="model", name=name)
     return tuple(model for model in COMPARED_MODELS if not selected or model.name in selected)

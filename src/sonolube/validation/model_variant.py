@@ -185,8 +185,6 @@ class ModelVariant:
         Whether `ratio` takes `ConditionColumns` too, and then returns the ratios of all conditions.
     seen : SeenSets, optional
         Published tests that a fixed constant was taken from; none where absent.
-    former_name : str
-        Name that it had; empty where it never had another.
     """
 
     name: str
@@ -198,7 +196,6 @@ class ModelVariant:
     friction_model: type[FrictionModel] | None = None
     takes_columns: bool = False
     seen: SeenSets | None = None
-    former_name: str = ""
 
     @property
     def seen_constants(self) -> int:

@@ -26,7 +26,6 @@ from sonolube.rig.file.entries import (
     FileEntries,
     entry_of,
     from_file,
-    refuse_former_names,
     set_entry,
     with_derived,
     with_entries,
@@ -147,7 +146,6 @@ def rig_from(content: Mapping[str, Any]) -> Rig:
     InvalidInput
         In one line that names the key and the value.
     """
-    refuse_former_names(content)
     file = validated(RigFile, content)
     derived = with_derived(content, file)
     if derived != content:
