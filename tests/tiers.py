@@ -17,9 +17,9 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 TIMES = Path(__file__).with_name("times.json")
-MAX = 0.5  # s, of a daily test
-MAX_OF_A_FUNCTION = 6.0  # s, of the daily cases of a function together
-MAX_OF_THE_QUICKEST = 2.0  # s, of the quickest case of a function, which is daily even beyond MAX
+MAX = 0.3  # s, of a daily test
+MAX_OF_A_FUNCTION = 3.0  # s, of the daily cases of a function together
+MAX_OF_THE_QUICKEST = 1.0  # s, of the quickest case of a function, which is daily even beyond MAX
 MAX_OF_A_FILE = 10.0  # s, of the quickest test of a file that has no other daily one
 _LISTED = 0.1  # s, below which a test or a fixture is not listed
 _SHARED = ("class", "module", "package", "session")  # scopes of fixtures
