@@ -11,6 +11,7 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_runs import read_runs, run_caveats
 from sonolube.measurement.recordings.mapping import mapping_toml, read_mapping
 from sonolube.measurement.run_headings import meaning_at_stake, run_heading
+from sonolube.measurement.run_table import run_table
 from sonolube.text.units import to_si
 from sonolube.vocabulary import quantities
 
@@ -192,3 +193,30 @@ def test_any_heading_is_known_or_not(label: str) -> None:
     found = run_heading(label)
     assert found is None or found.name
     assert isinstance(meaning_at_stake(label), str)
+
+
+TABLE = "Versuch;Normalkraft [N];v [mm/s];Amplitude [um];Reibkraft [N]\n"
+
+
+def test_rows_that_summarise_others_are_no_runs_and_said(tmp_path: Path) -> None:
+    rows = "1;5,0;200;0;2,10\n2;5,0;200;1,0;1,72\nMittelwert;5,0;200;0,5;1,91\nStd.;0;0;0,5;0,19\n"
+    table = run_table(written(tmp_path, TABLE + rows))
+    assert table.columns["friction_force"] == approx([2.10, 1.72])
+    assert table.caveats[:2] == ("line 4 is no run and left out: 'Mittelwert'", "line 5 is no run and left out: 'Std.'")
+    with raises(InvalidInput, match="needs a head and at least one run"):
+        read_runs(written(tmp_path, f"{TABLE}Mean;5,0;200;0,5;1,91\n"))
+
+
+def test_a_mark_that_may_separate_thousands_is_refused_with_both_readings(tmp_path: Path) -> None:
+    path = written(tmp_path, "Normalkraft [mN];v [um/s];Amplitude [nm];Reibkraft [mN]\n5.000;200.000;1.000;1.720\n")
+    with raises(InvalidInput, match=r"'5\.000' may be 5 or 5000: .* text\.decimal_sign in a mapping"):
+        read_runs(path)
+    for sign, load in ((",", 5.0), (".", 5e-3)):
+        mapping = written(tmp_path, f'[text]\ndecimal_sign = "{sign}"\n', "sign.toml")
+        assert run_table(path, mapping=read_mapping(mapping)).columns["normal_load"] == approx([load])
+
+
+def test_thousands_beside_a_decimal_sign_are_read(tmp_path: Path) -> None:
+    table = run_table(written(tmp_path, "Normalkraft [mN];v [mm/s];Reibkraft [mN]\n5.000,5;200,0;1.720,0\n"))
+    assert table.columns["normal_load"] == approx([5.0005])
+    assert table.columns["friction_force"] == approx([1.72])

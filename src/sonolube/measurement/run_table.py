@@ -29,6 +29,15 @@ from sonolube.vocabulary import quantities
 
 _PREAMBLE: Final = re.compile(r'"?\s*(?:[#%](?!\s*[;,\t|])|//)|[\s;,"|]*\Z')  # comments, and lines without any text
 _SEPARATOR_LINE: Final = re.compile(r"sep=(.)", re.IGNORECASE)  # with which Excel tells its separator
+_SUMMARIES: Final = frozenset(
+    {
+        *("mean", "mean value", "average", "avg", "median", "mittel", "mittelwert", "mw", "durchschnitt"),
+        *("sd", "s.d", "std", "std dev", "stdev", "standard deviation", "stabw", "stdabw", "standardabweichung"),
+        *("sem", "standard error", "cv", "variance", "varianz", "min", "minimum", "max", "maximum"),
+        *("sum", "summe", "total", "gesamt"),
+    }
+)
+_THOUSANDS: Final = re.compile(r"[-+]?[1-9]\d{0,2}([.,])\d{3}(?:\1\d{3})*")
 _LARGEST: Final = 1e30  # in any unit; keeps squares of quantities within the range of floats
 _MAX_RUNS: Final = 100_000
 _QUOTED: Final = 40  # characters of a cell in an error message
@@ -113,13 +122,16 @@ def assigned_columns(
     separator: str = ",",
 ) -> RunTable:
     """Columns of a table of runs by its labels and rows."""
+    rows, summaries = _runs_and_summaries(rows)
+    if not rows:
+        raise InvalidInput(f"{path}: needs a head and at least one run")
     mapped = _by_mapping(path, labels, mapping) if mapping else []
     others, left_out = _by_headings(path, line, labels, mapped, mapping)
     layout = mapping.text if mapping else TextLayout()
     numbers = [each for each in (*mapped, *others) if each.name not in TEXT_NAMES]
     words = [each for each in (*mapped, *others) if each.name in TEXT_NAMES]
-    filled = (_cell(cells, each.place) for _, cells in rows for each in numbers)
-    sign = layout.decimal_sign or ("." if separator == "," else detected_decimal_sign(filled))
+    filled = [_cell(cells, each.place) for _, cells in rows for each in numbers]
+    sign = layout.decimal_sign or ("." if separator == "," else _decimal_sign(path, filled))
     missing = frozenset(layout.missing)
     texts = {each.name: [_cell(cells, each.place) for _, cells in rows] for each in words}
     directions = [_word(cells, each) for each in numbers for _, cells in rows if each.name == DIRECTION_COLUMN]
@@ -127,8 +139,32 @@ def assigned_columns(
         columns={each.name: _in_si(path, line, each, rows, sign, missing) for each in numbers},
         texts=texts | ({f"{DIRECTION_COLUMN}_word": directions} if any(directions) else {}),
         lines=[number for number, _ in rows],
-        caveats=_left_out_caveat(left_out),
+        caveats=(*summaries, *_left_out_caveat(left_out)),
     )
+
+
+def _runs_and_summaries(rows: Sequence[NumberedCells]) -> tuple[Sequence[NumberedCells], tuple[str, ...]]:
+    """Rows of runs, and a caveat on each row that summarises others."""
+    words = {number: next((cell for cell in cells if _is_summary(cell)), "") for number, cells in rows}
+    caveats = tuple(f"line {number} is no run and left out: {_quoted(word)}" for number, word in words.items() if word)
+    return [(number, cells) for number, cells in rows if not words[number]], caveats
+
+
+def _is_summary(cell: str) -> bool:
+    """Whether a cell marks its row as a summary of others, such as a mean."""
+    return len(cell) <= _QUOTED and cell.strip(" .:*()[]=\t").casefold() in _SUMMARIES
+
+
+def _decimal_sign(path: Path, cells: Sequence[str]) -> str:
+    """Decimal sign of the numbers of a table; refuse a mark that may as well separate thousands."""
+    marked = [cell for cell in cells if "," in cell or "." in cell]
+    if marked and all(_THOUSANDS.fullmatch(cell) for cell in marked):
+        small, large = float(marked[0].replace(",", ".")), re.sub(r"\D", "", marked[0])
+        raise InvalidInput(
+            f"{path}: {_quoted(marked[0])} may be {small:g} or {large}: each number with a mark has three digits behind"
+            " it; state text.decimal_sign in a mapping, or write one of them with other digits"
+        )
+    return detected_decimal_sign(cells)
 
 
 def _below_preamble(text: str, layout: TextLayout) -> TextLayout:
@@ -203,10 +239,9 @@ def _in_si(
         return _angles(path, line, column, rows, sign, missing)
     source = column.source
     unit = quantities()[column.name].unit
-    stated = source.unit
-    if stated is None:
-        found = run_heading(source.column)
-        stated = found.unit if found else _bracketed(source.column)
+    found = run_heading(source.column)
+    of_heading = found.unit if found else _bracketed(source.column)
+    stated = of_heading if source.unit is None else source.unit
     if unit and not stated:
         raise InvalidInput(
             f"{path}: line {line}: {column.shown} has no unit; expected {unit_description(unit)}: put it into the"
@@ -214,7 +249,8 @@ def _in_si(
         )
     gain, offset, _ = si_conversion(stated, unit=unit, name=f"{path}: line {line}: {column.shown}")
     numbers = np.array([_number(path, *row, column, sign, missing) for row in rows])
-    return offset + gain * (numbers * source.gain + source.offset)
+    readings = source.calibrated(numbers, stated=of_heading, name=f"{path}: line {line}: {column.shown}")
+    return offset + gain * readings
 
 
 def _angles(
@@ -256,10 +292,20 @@ def _number(path: Path, line: int, cells: Sequence[str], column: _Column, sign: 
         return float("nan")
     number = parse_number(cell, decimal_sign=sign)
     if number is None:
+        number = _with_thousands(cell, sign)
+    if number is None:
         raise InvalidInput(f"{path}: line {line}: {column.shown} {_quoted(cell)} is no number{_sign_hint(cell, sign)}")
     if not abs(number) <= _LARGEST:
         raise InvalidInput(f"{path}: line {line}: {column.shown} {_quoted(cell)} lies beyond any run")
     return number
+
+
+def _with_thousands(cell: str, sign: str) -> float | None:
+    """Number whose thousands are separated by the mark that is not its decimal sign; None where it has none."""
+    other = {".": ",", ",": "."}[sign]
+    if re.fullmatch(rf"[-+]?\d{{1,3}}(?:\{other}\d{{3}})+(?:\{sign}\d+)?", cell) is None:
+        return None
+    return parse_number(cell.replace(other, ""), decimal_sign=sign)
 
 
 def _sign_hint(cell: str, sign: str) -> str:

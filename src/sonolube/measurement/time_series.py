@@ -14,6 +14,8 @@ _LOCAL = 31  # intervals over which their local median is taken
 _GAP = 2.5  # local medians, above which an interval is a gap
 _OTHER_RATE = 1.5  # ratio of the local intervals from which the rate has changed
 _SAME_RATE = 0.01  # relative deviation of the mean intervals of stretches of one rate
+_ALONE = 3.0  # times as long as the intervals before and after it is a gap
+_CROWDED = 0.02  # of the time, by which the clock may deviate from one of even samples
 _ROUNDED = 1.0  # intervals by which a rounded clock deviates
 
 
@@ -69,6 +71,17 @@ def uniform_sample_interval(*, time: Floats) -> float:
         at = float(time[int(np.argmax(uneven))])
         raise InvalidInput(f"time must be evenly spaced; after {at:.6g} s samples were dropped or the rate changes")
     return interval
+
+
+def changes_rate(*, time: Floats) -> bool:
+    """Whether the samples are crowded in a part of a recording; gaps between them do not count."""
+    interval = np.diff(time)
+    if interval.size < 2:
+        return False
+    beside = np.maximum(np.append(interval[1:], interval[-2]), np.insert(interval[:-1], 0, interval[1]))
+    passed = np.cumsum(np.where(interval > _ALONE * beside, beside, interval))
+    even = np.arange(1, passed.size + 1) / passed.size
+    return bool(np.max(np.abs(passed / passed[-1] - even)) > _CROWDED)
 
 
 def even_stretches(*, time: Floats, fewest: int) -> tuple[float, list[slice]]:

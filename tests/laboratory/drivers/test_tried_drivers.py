@@ -18,5 +18,6 @@ def test_twenty_faults_of_generator_and_motor_end_with_the_verdict_that_the_inst
     with ThreadPoolExecutor(4) as pool:
         runs = list(pool.map(partial(try_fault, drivers), faults))
     assert [(each.fault, each.wrong) for each in runs if each.wrong] == []
-    assert {each.verdict.partition(",")[0].partition(":")[0] for each in runs} == {"confirmed off", "cut the power"}
+    verdicts = {each.verdict.partition(",")[0].partition(":")[0] for each in runs}
+    assert verdicts - {"as they were before the run"} == {"confirmed off", "cut the power"}
     assert all(each.fault.is_lie for each in runs if each.is_on)

@@ -304,8 +304,8 @@ def test_set_and_measured_are_compared_on_devices_unless_that_is_left_out(
 
     monkeypatch.setattr(protocol_run, "run_protocol", noted)
     text = NamedBytes("warm.toml", WARM.format(place="actuator").replace('"4 s"', '"0.5 s"').encode())
-    with analogue_rig(tmp_path) as rig:
-        monkeypatch.setattr(protocol_run, "ready_devices", lambda path: rig.devices)
+    with analogue_rig(tmp_path) as rig, MonkeyPatch.context() as patch:  # undone before that of the rig
+        patch.setattr(protocol_run, "ready_devices", lambda path: rig.devices)
         for no_self_test in (False, True):
             found = lab.run(text, tmp_path / "devices.toml", no_self_test=no_self_test, yes=True, out=tmp_path / "runs")
             assert isinstance(found, RunAnswer)

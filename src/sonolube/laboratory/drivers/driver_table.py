@@ -162,7 +162,7 @@ class OfDriver:
         if "driver" not in value:
             raise ValueError(f"driver is missing: {_listed(table)}")
         name = value["driver"]
-        if name not in table:
+        if not isinstance(name, str) or name not in table:
             raise ValueError(f"driver must be {_listed(table)}, got {str(name)[:40]!r}")
         return table[name].model_validate(value)
 

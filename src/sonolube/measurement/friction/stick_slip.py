@@ -23,7 +23,7 @@ from sonolube.measurement.friction.force_cycle import (
 )
 from sonolube.measurement.friction.slip_events import DETECTION_SCORE, Indices, SlipChain, find_slips, noise_spectra
 from sonolube.measurement.statistics.autocorrelation import correlated_mean
-from sonolube.measurement.time_series import even_stretches, evenly_sampled, require_time_series
+from sonolube.measurement.time_series import changes_rate, even_stretches, evenly_sampled, require_time_series
 
 _MIN_SAMPLES = 64
 _MIN_SLIPS = 3
@@ -99,6 +99,10 @@ def estimate_stick_slip(
     if minimum_drop is not None:
         require_positive(minimum_drop=minimum_drop)
     known = np.isfinite(f)
+    if changes_rate(time=t):
+        raise InvalidInput(
+            "the samples are not evenly spaced in time, which stick-slip needs; measure a part of one rate"
+        )
     return stick_slip_of_parts([t[known]], [f[known]], minimum_drop=minimum_drop or 0.0)[0]
 
 

@@ -34,6 +34,7 @@ _DIMENSION = MappingProxyType(
 )
 _UNIT = re.compile(r"([pnuµμmkMG]?)(Hz|[Oo]hm|OHM|Ω|S|H|F|rad)")
 _PREFIX = {"": 1.0, "p": 1e-12, "n": 1e-9, "u": 1e-6, "µ": 1e-6, "μ": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}
+_LARGEST = 1e30  # in any unit
 _BRACKETED = re.compile(r"(.*\S)\s*[(\[]([^()\[\]]*)[)\]]")
 _DIVIDED = re.compile(r"(.*\S)\s*/\s*(\S+)")
 
@@ -212,4 +213,6 @@ def _finite_number(path: Path, row: NumberedCells, at: int, decimal_sign: str) -
     value = parse_number(cells[at], decimal_sign=decimal_sign)
     if value is None or not np.isfinite(value):
         raise InvalidInput(f"{path}: line {line}: {cells[at].strip()[:40]!r} is not a finite number")
+    if abs(value) > _LARGEST:
+        raise InvalidInput(f"{path}: line {line}: {cells[at].strip()[:40]!r} lies beyond any instrument")
     return value

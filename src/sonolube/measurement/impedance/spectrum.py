@@ -108,6 +108,9 @@ class ImpedanceSweep:
     has_phase: bool = True
 
 
+_LEAST, _MOST = 1e-12, 1e18  # ohm, beyond any instrument
+
+
 def sorted_by_frequency(sweep: ImpedanceSweep, *, path: Path) -> ImpedanceSweep:
     """Sweep in order of increasing frequency, validated."""
     f, z, lines = sweep.frequency, sweep.impedance, sweep.lines
@@ -115,8 +118,9 @@ def sorted_by_frequency(sweep: ImpedanceSweep, *, path: Path) -> ImpedanceSweep:
         f, z, lines = f[::-1], z[::-1], lines[::-1]
     _refuse(~(np.isfinite(f) & (f > 0)), "the frequency must be positive", lines, path)
     _refuse(np.concatenate([[False], np.diff(f) <= 0]), "the frequency is not monotonic", lines, path)
-    usable = np.isfinite(z) & (np.abs(z) > np.finfo(float).tiny) & (np.abs(z) < 1 / np.finfo(float).tiny)
-    _refuse(~usable, "the impedance is zero or not finite", lines, path)
+    usable = np.isfinite(z) & (np.abs(z) > _LEAST) & (np.abs(z) < _MOST)
+    first = f"{abs(z[int(np.argmin(usable))]):g} ohm"
+    _refuse(~usable, f"the impedance of {first} is none that an instrument reads", lines, path)
     return ImpedanceSweep(frequency=f, impedance=z, lines=lines, has_phase=sweep.has_phase)
 
 

@@ -5,6 +5,7 @@ Caveats name samples far beyond all others of their channel, as a lost bit leave
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,6 +30,7 @@ from sonolube.measurement.recordings.raw_table import (
     numbered_labels,
     si_conversion,
 )
+from sonolube.measurement.time_series import changes_rate
 from sonolube.vocabulary import quantities, unit_of
 
 if TYPE_CHECKING:
@@ -37,6 +39,9 @@ if TYPE_CHECKING:
 _MOST = 3  # samples of a channel that can be damaged; more are a signal
 _REACH = 20.0  # distance from the median over the largest of all other samples
 _FEWEST = 20  # samples of a channel of which one can be judged
+_FRICTION = frozenset({"friction_force", "friction_coefficient"})
+_SIGNED_SPEEDS = ("relative_velocity", "sliding_speed", "rotation_speed")
+_SAME_SIGN = 0.2  # of the larger end of a range, up to which the other one is noise or an error of the zero
 _SET_POINT = "_set"  # end of the names of set points, which are unknown before they are set
 
 
@@ -93,6 +98,8 @@ def recording_dataset(
     if mapping is not None:
         table = _selected(table, mapping, path)
         mapping = mapping.for_labels([column.label for column in table.columns])
+    if not partial and (mapping is None or (mapping.axis, mapping.sample_rate) == (None, None)):
+        table = _aligned(table, path)
     quantity = _axis_quantity(table, mapping)
     sources = _channel_sources(table, path, mapping, quantity)
     axis = _axis(table, path, mapping, sources, quantity)
@@ -104,12 +111,88 @@ def recording_dataset(
         raise InvalidInput(f"{path}: holds no channel beside its {quantity}")
     known = quantities()[quantity]
     if not partial:
-        table = replace(table, caveats=(*table.caveats, *_damaged(variables, axis, quantity)))
+        variables, reversed_signs = _with_friction_positive(variables)
+        found = (*reversed_signs, *_uneven(axis, quantity), *_damaged(variables, axis, quantity))
+        table = replace(table, caveats=(*table.caveats, *found))
     return xr.Dataset(
         variables,
         coords={quantity: (quantity, axis, {"units": known.unit or "1", "long_name": known.meaning})},
         attrs=_attributes(table, path, mapping, digest, axis if quantity == "time" else None),
     )
+
+
+def _aligned(table: RawTable, path: Path) -> RawTable:
+    """Table whose columns of one sample interval all begin and end together, to half an interval."""
+    starts = [column.start or 0.0 for column in table.columns if column.interval is not None]
+    intervals = {column.interval for column in table.columns}
+    if len(set(starts)) < 2 or len(intervals) != 1:
+        return table
+    (interval,) = intervals
+    begin = max(starts)
+    if interval is None or not (interval > 0 and isfinite(begin) and isfinite(interval)):
+        return table
+    left_out = [round((begin - start) / interval) for start in starts]
+    rows = min(column.values.size - out for column, out in zip(table.columns, left_out, strict=True))
+    if rows < 1:
+        raise InvalidInput(
+            f"{path}: its channels begin at times up to {begin - min(starts):.6g} s apart and have none in common;"
+            " choose with --group or --channel"
+        )
+    columns = tuple(
+        replace(column, start=begin, values=column.values[out : out + rows])
+        for column, out in zip(table.columns, left_out, strict=True)
+    )
+    caveat = (
+        f"the channels begin at different times, up to {begin - min(starts):.6g} s apart: the {rows * interval:.6g} s"
+        " that all of them cover are read"
+    )
+    return replace(table, columns=columns, caveats=(*table.caveats, caveat))
+
+
+_Variables = Mapping[str, tuple[str, Floats, dict[str, str | float]]]
+
+
+def _with_friction_positive(variables: _Variables) -> tuple[_Variables, list[str]]:
+    """Channels with the sign of friction reversed where the sensor has it negative in one direction, and the caveats.
+
+    A channel of the speed that changes its sign tells that the friction does.
+    """
+    if any(name in variables and _of_both_signs(variables[name][1]) for name in _SIGNED_SPEEDS):
+        return variables, []
+    changed, caveats = dict(variables), []
+    for name in _FRICTION & variables.keys():
+        axis, values, attributes = variables[name]
+        low, high = _ends(values)
+        if low < 0 and high < _SAME_SIGN * -low:
+            gain, offset = (-float(attributes[f"calibration_{each}"]) for each in ("gain", "offset"))
+            changed[name] = (axis, -values, attributes | {"calibration_gain": gain, "calibration_offset": offset})
+            caveats.append(
+                f"{name} is negative by the sign of the sensor, down to {low:.4g} {attributes['units']}: its magnitude"
+                " is taken"
+            )
+    return changed, caveats
+
+
+def _of_both_signs(values: Floats) -> bool:
+    """Whether a speed has both signs, beyond noise."""
+    low, high = _ends(values)
+    return low < -_SAME_SIGN * high and high > -_SAME_SIGN * low
+
+
+def _ends(values: Floats) -> tuple[float, float]:
+    """5th and 95th percentile of the known values; NaN where there are none."""
+    known = values[np.isfinite(values)]
+    low, high = np.percentile(known, [5, 95]) if known.size else (np.nan, np.nan)
+    return float(low), float(high)
+
+
+def _uneven(axis: Floats, quantity: str) -> list[str]:
+    """Caveat on a clock whose rate changes."""
+    if quantity != "time" or axis.size < _FEWEST or not changes_rate(time=axis):
+        return []
+    return [
+        "the samples are not evenly spaced in time: each mean is one of samples, not of time; measure parts of one rate"
+    ]
 
 
 def _damaged(
@@ -210,7 +293,7 @@ def _channel(
         raise InvalidInput(f"{path}: {column.label!r} holds no value among {values.size}")
     stated = source.unit if source.unit is not None else _name_and_unit(column)[1]
     known = quantities().get(name)
-    calibrated = values if (source.gain, source.offset) == (1.0, 0.0) else values * source.gain + source.offset
+    calibrated = source.calibrated(values, stated=_name_and_unit(column)[1], name=f"{path}: {column.label!r}")
     unit = known.unit if known else (stated or "")
     understood = stated
     if known and stated is not None:

@@ -8,9 +8,9 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from sonolube.checks import require_finite, require_positive
+from sonolube.checks import Floats, require_finite, require_positive
 from sonolube.errors import InvalidInput, UnknownName, suggestion
-from sonolube.measurement.recordings.raw_table import numbered_labels
+from sonolube.measurement.recordings.raw_table import numbered_labels, si_conversion
 from sonolube.measurement.run_columns import TEXT_NAMES
 from sonolube.text.toml_text import read_toml
 from sonolube.text.units import to_si
@@ -60,6 +60,8 @@ class ChannelSource:
         Unit of the calibrated value; None for the unit stated in the file.
     gain, offset : float
         Calibration: value = gain * reading + offset.
+    reading_unit : str or None
+        Unit of the reading that the gain takes, "V" of a gain of "2 N/V"; None for the unit stated in the file.
     other_columns : tuple of str
         Labels that stand in its place in other files of the kind; the first one that a file has is read.
     optional : bool
@@ -75,6 +77,7 @@ class ChannelSource:
     unit: str | None = None
     gain: float = 1.0
     offset: float = 0.0
+    reading_unit: str | None = None
     other_columns: tuple[str, ...] = ()
     optional: bool = False
 
@@ -83,8 +86,32 @@ class ChannelSource:
         """Labels of the column, in order of precedence."""
         return (self.column, *self.other_columns)
 
+    @property
+    def is_calibrated(self) -> bool:
+        """Whether gain and offset change a reading."""
+        return (self.gain, self.offset) != (1.0, 0.0)
+
+    def calibrated(self, values: Floats, *, stated: str | None, name: str) -> Floats:
+        """Values of readings, whose unit a file states or not; refuse a gain without units where it states another."""
+        if not self.is_calibrated:
+            return values
+        written = " ".join((stated or "").split()).strip("()[]")
+        if self.reading_unit is not None and written:
+            per, shift, _ = si_conversion(written, unit=self.reading_unit, name=name)
+            values = values if (per, shift) == (1.0, 0.0) else values * per + shift
+        elif written and self.unit and written != self.unit:
+            raise InvalidInput(
+                f"{name} is in {written} by the file, and its gain of {self.gain:g} has no units: write those of value"
+                ' and reading, such as gain = "2 N/V"'
+            )
+        return values * self.gain + self.offset
+
     def __post_init__(self) -> None:
-        for key, text in (("column", self.column), ("unit", self.unit or "")):
+        for key, text in (
+            ("column", self.column),
+            ("unit", self.unit or ""),
+            ("unit of gain", self.reading_unit or ""),
+        ):
             if not isinstance(text, str):
                 raise InvalidInput(f"{key} must be text, got {text!r}")
         require_finite(gain=self.gain, offset=self.offset)
@@ -315,7 +342,27 @@ def _source(keys: dict[str, Any], name: str) -> ChannelSource:
     first, *others = _texts(keys.pop("column", ()), f"{name}.column") or (None,)
     if first is None:
         raise InvalidInput(f"{name}.column is missing")
+    if isinstance(keys.get("gain"), str):
+        keys |= _gain_with_units(keys["gain"], keys.get("unit"), f"{name}.gain")
     return ChannelSource(column=first, other_columns=tuple(label for label in others if label), **keys)
+
+
+_GAIN = re.compile(r"\s*([-+\d.eE]+)\s*([^/\d][^/]*|1)/([^/]+)")
+
+
+def _gain_with_units(text: str, unit: Any, name: str) -> dict[str, Any]:
+    """Gain of a text such as "2 N/V", with the units of the value and of the reading."""
+    found = _GAIN.fullmatch(text)
+    if found is None:
+        raise InvalidInput(f'{name} {text[:60]!r} needs a number and the units of value and reading, such as "2 N/V"')
+    number, of_value, of_reading = (part.strip() for part in found.groups())
+    if unit is not None and unit != of_value:
+        raise InvalidInput(f"{name} {text!r} gives a value in {of_value}, but unit is {unit!r}; leave unit out")
+    try:
+        gain = float(number)
+    except ValueError:
+        raise InvalidInput(f"{name} {text[:60]!r}: {number!r} is no number") from None
+    return {"gain": gain, "unit": of_value, "reading_unit": of_reading}
 
 
 def _names_of(record: type[Selection | TextLayout]) -> set[str]:
@@ -381,6 +428,8 @@ def _text(value: Any) -> str:
 def _source_entries(source: ChannelSource) -> dict[str, Any]:
     """Entries of a channel or an axis."""
     changed = {key: value for key, value in _changed(source).items() if key not in ("column", "other_columns")}
+    if reading_unit := changed.pop("reading_unit", None):
+        changed["gain"] = f"{source.gain!r} {changed.pop('unit')}/{reading_unit}"
     return {"column": source.labels if source.other_columns else source.column} | changed
 
 

@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from math import inf
 from pathlib import Path
 from typing import Any, BinaryIO, ClassVar, final
 
@@ -73,7 +74,8 @@ class Tdms:
                 file = TdmsFile.open(stream)
             caveats = _checked(log, path, incomplete=incomplete)
             channels = _selected_channels(file, path, mapping)
-            columns = {label: _empty_column(label, channel) for label, channel in channels.items()}
+            first = min(map(_begun, channels.values()))
+            columns = {label: _empty_column(label, channel, first) for label, channel in channels.items()}
             if not incomplete:
                 require_common_length(
                     [ChannelEntry(label, channel.group_name, len(channel)) for label, channel in channels.items()], path
@@ -198,19 +200,26 @@ def _label(channel: Any, counts: Counter[str]) -> str:
     return name if counts[name] == 1 else one_line(f"{channel.group_name}/{name}")
 
 
-def _empty_column(label: str, channel: Any) -> RawColumn:
-    """Column of a channel without its values: label, unit and waveform time base."""
+def _empty_column(label: str, channel: Any, first: float) -> RawColumn:
+    """Column of a channel without its values: label, unit and waveform time base, after the first start of the file."""
     properties = channel.properties
     unit = properties.get("unit_string") or properties.get("NI_UnitDescription")
-    interval, start = properties.get("wf_increment"), properties.get("wf_start_offset", 0.0)
+    interval, offset = properties.get("wf_increment"), properties.get("wf_start_offset", 0.0)
+    begun = _begun(channel)
     return RawColumn(
         label=label,
         values=np.empty(0),
         unit=str(unit) if unit else None,
-        start=float(start) if isinstance(start, (int, float)) else 0.0,
+        start=(float(offset) if isinstance(offset, (int, float)) else 0.0) + (begun - first if begun < inf else 0.0),
         interval=float(interval) if isinstance(interval, (int, float)) and interval else None,
         group=one_line(channel.group_name),
     )
+
+
+def _begun(channel: Any) -> float:
+    """Start of the waveform of a channel, in seconds since 1970; infinite where it states none."""
+    stated = channel.properties.get("wf_start_time")
+    return float(stated.astype("datetime64[us]").astype(np.int64)) / 1e6 if isinstance(stated, np.datetime64) else inf
 
 
 def _blocks(file: Any, channels: dict[str, Any], block_samples: int | None) -> Iterator[dict[str, Floats]]:

@@ -3,6 +3,7 @@
 import math
 import tomllib
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import asdict, dataclass, fields
 from functools import partial
 from pathlib import Path
@@ -183,7 +184,7 @@ def surface_sheet(path: Path, *, settings: SurfaceSettings) -> sheet.Sheet:
         )
     levelled = surfaces.remove_form(file.height_map, degree=settings.degree, robust=settings.robust)
     surface = _filtered(levelled, settings)
-    sections = [sheet.Sheet(caveats=file.caveats), _part(surfaces.height_parameters(surface))]
+    sections = [sheet.Sheet(caveats=(*file.caveats, *_spikes(levelled))), _part(surfaces.height_parameters(surface))]
     for measure in (
         surfaces.hybrid_parameters,
         surfaces.spatial_parameters,
@@ -200,6 +201,23 @@ def surface_sheet(path: Path, *, settings: SurfaceSettings) -> sheet.Sheet:
         _figures(surface),
     ]
     return sheet.joined(sections, title=path.name, source=surface_source(file))
+
+
+def _spikes(levelled: HeightMap) -> tuple[str, ...]:
+    """Caveat on pixels that stand out of their neighbours, with the roughness and the summits without them."""
+    heights = surfaces.spikes(levelled)
+    count = int(np.count_nonzero(heights))
+    if not count:
+        return ()
+    without = levelled.with_height(levelled.height - heights)
+    rms, highest = surfaces.height_parameters(without).rms_height, float(np.max(np.abs(heights)))
+    told = f"without them Sq is {format_si(rms, 'm')}"
+    with suppress(InvalidInput):  # no summits
+        told += f" and the summit radius {format_si(surfaces.summit_statistics(without).summit_radius, 'm')}"
+    return (
+        f"{count} of {heights.size} pixels stand up to {format_si(highest, 'm')} out of their neighbours: spikes, which"
+        f" all parameters contain; {told}; take them off in the profilometer's software",
+    )
 
 
 def surface_file(path: Path, settings: SurfaceSettings) -> SurfaceFile:
