@@ -220,3 +220,34 @@ def test_thousands_beside_a_decimal_sign_are_read(tmp_path: Path) -> None:
     table = run_table(written(tmp_path, "Normalkraft [mN];v [mm/s];Reibkraft [mN]\n5.000,5;200,0;1.720,0\n"))
     assert table.columns["normal_load"] == approx([5.0005])
     assert table.columns["friction_force"] == approx([1.72])
+
+
+COEFFICIENTS = "Normalkraft in N\tGeschwindigkeit in mm/s\tAmplitude in \u00b5m\tReibungszahl\n"
+
+
+def test_coefficients_of_friction_give_ratios_by_the_rows_without_vibration(tmp_path: Path) -> None:
+    rows = "5,000\t200,0\t0,00\t0,4200\n5,000\t200,0\t1,00\t0,3440\n5,000\t200,0\t2,00\t0,2600\n"
+    runs = read_runs(written(tmp_path, COEFFICIENTS + rows))
+    assert runs["friction_reduction"].values == approx([1 - 0.344 / 0.42, 1 - 0.26 / 0.42])
+
+
+def test_coefficients_without_a_load_and_in_two_columns_give_ratios(tmp_path: Path) -> None:
+    runs = read_runs(written(tmp_path, "v [mm/s],Amplitude [um],COF on,COF off\n20,1,0.2,0.5\n20,2,0.1,0.4\n"))
+    assert runs["friction_reduction"].values == approx([0.6, 0.75])
+    assert "friction_force" not in runs
+    with raises(InvalidInput, match=r"line 2: intrinsic_friction_coefficient must be positive, got -0\.5"):
+        read_runs(written(tmp_path, "v [mm/s],Amplitude [um],COF on,COF off\n20,1,0.2,-0.5\n"))
+
+
+def test_a_row_of_units_below_the_headings_gives_them(tmp_path: Path) -> None:
+    text = "Versuch;Normalkraft;Geschwindigkeit;Amplitude;Reibkraft\n;N;mm/s;\u00b5m;mN\nV1;5,0;200,0;1,0;2100,0\n"
+    table = run_table(written(tmp_path, text))
+    found = {name: float(values[0]) for name, values in table.columns.items()}
+    assert found == approx({"normal_load": 5, "sliding_speed": 0.2, "vibration_amplitude": 1e-6, "friction_force": 2.1})
+    assert table.texts["run"] == ["V1"]
+
+
+def test_an_amplitude_named_zero_to_peak_is_that_of_the_vibration(tmp_path: Path) -> None:
+    text = "Last [N];v [mm/s];Amplitude zero-to-peak [um];FR [N]\n5,0;200,0;1,5;1,9\n"
+    found = run_table(written(tmp_path, text)).columns
+    assert (float(found["vibration_amplitude"][0]), float(found["friction_force"][0])) == approx((1.5e-6, 1.9))

@@ -16,12 +16,15 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import RecordingMapping, read_mapping
 from sonolube.measurement.run_columns import DIRECTION_COLUMN, FRICTION_COLUMNS, heading
 from sonolube.measurement.run_table import RunTable, assigned_columns, run_table
+from sonolube.text.units import format_si
+from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _MAX_LINES = 6  # named in a caveat
 _VIBRATIONS = ("vibration_amplitude", "voltage_peak_to_peak", "vibration_velocity")
+_FRICTIONS = ("friction_force", "friction_coefficient")  # each with that without vibration, named intrinsic_...
 
 
 def read_runs(path: str | Path, *, mapping: RecordingMapping | Path | None = None) -> "xr.Dataset":
@@ -31,9 +34,9 @@ def read_runs(path: str | Path, *, mapping: RecordingMapping | Path | None = Non
     ----------
     path : str or Path
         Table between commas, semicolons or tabs, as `run_table` reads it. With columns of `RUN_COLUMNS` or of the
-        vocabulary, among them `friction_reduction`, `friction_ratio`, or `friction_force` and
-        `intrinsic_friction_force`. An empty cell is not measured. Rows at an amplitude, velocity or voltage of 0 give
-        the friction without vibration of the rows of the same speed and load that state none.
+        vocabulary, among them `friction_reduction`, `friction_ratio`, or force or coefficient of friction with and
+        without vibration. An empty cell is not measured. Rows at an amplitude, velocity or voltage of 0 give the
+        friction without vibration of the rows of the same speed and load that state none.
     mapping : RecordingMapping, Path or None
         Assignment of columns, or the TOML file that holds it; other columns count by their headings.
 
@@ -70,7 +73,10 @@ def _runs(table: RunTable, path: Path) -> "xr.Dataset":
     """Measured runs of the columns of a table."""
     import xarray as xr
 
-    columns, without = _with_references(dict(table.columns))
+    columns, without = dict(table.columns), np.zeros(len(table.lines), bool)
+    for name in _FRICTIONS:
+        columns, of_name = _with_references(columns, name)
+        without |= of_name
     _derive_wear(columns)
     reduction = _friction_reductions(path, columns, table.lines)
     columns["friction_reduction"] = reduction
@@ -90,14 +96,16 @@ def run_caveats(runs: "xr.Dataset") -> tuple[str, ...]:
     return tuple(line for line in str(runs.attrs.get("caveats", "")).split("\n") if line)
 
 
-def _with_references(columns: dict[str, Floats]) -> tuple[dict[str, Floats], np.ndarray]:
+def _with_references(columns: dict[str, Floats], name: str) -> tuple[dict[str, Floats], np.ndarray]:
     """Columns with the friction without vibration of rows at amplitude 0 in the others, and which rows these are.
+
+    `name` is that of the friction, a force or a coefficient.
 
     A row at amplitude 0 serves only those of its speed and load, and is no run of its own.
     """
     count = next(iter(columns.values())).size if columns else 0
     given = [columns[name] for name in _VIBRATIONS if name in columns]
-    force = columns.get("friction_force", np.full(count, np.nan))
+    force = columns.get(name, np.full(count, np.nan))
     without = np.zeros(count, bool)
     if given:
         without = np.all([(values == 0) | np.isnan(values) for values in given], axis=0)
@@ -105,19 +113,16 @@ def _with_references(columns: dict[str, Floats]) -> tuple[dict[str, Floats], np.
     if not without.any():
         return columns, without
     settings = np.stack([columns.get(name, np.zeros(count)) for name in ("sliding_speed", "normal_load")], axis=1)
-    intrinsic = columns.get("intrinsic_friction_force", np.full(count, np.nan)).copy()
-    deviation = columns.get("friction_force_uncertainty", np.full(count, np.nan))
-    of_intrinsic = columns.get("intrinsic_friction_force_uncertainty", np.full(count, np.nan)).copy()
+    intrinsic = columns.get(f"intrinsic_{name}", np.full(count, np.nan)).copy()
+    deviation = columns.get(f"{name}_uncertainty", np.full(count, np.nan))
+    of_intrinsic = columns.get(f"intrinsic_{name}_uncertainty", np.full(count, np.nan)).copy()
     for row in np.flatnonzero(np.isnan(intrinsic) & ~without):
         same = without & np.all(np.isclose(settings, settings[row], rtol=1e-2, equal_nan=True), axis=1)
         if same.any():
             intrinsic[row] = np.mean(force[same])
             of_intrinsic[row] = np.sqrt(np.sum(deviation[same] ** 2)) / np.count_nonzero(same)
-    stated = {"intrinsic_friction_force_uncertainty": of_intrinsic} if np.isfinite(of_intrinsic).any() else {}
-    return columns | stated | {
-        "intrinsic_friction_force": intrinsic,
-        "friction_force": np.where(without, np.nan, force),
-    }, without
+    stated = {f"intrinsic_{name}_uncertainty": of_intrinsic} if np.isfinite(of_intrinsic).any() else {}
+    return columns | stated | {f"intrinsic_{name}": intrinsic, name: np.where(without, np.nan, force)}, without
 
 
 def _friction_reductions(path: Path, columns: dict[str, Floats], lines: Sequence[int]) -> Floats:
@@ -125,13 +130,15 @@ def _friction_reductions(path: Path, columns: dict[str, Floats], lines: Sequence
     count = next(iter(columns.values())).size if columns else 0
     reduction = columns.get("friction_reduction", np.full(count, np.nan))
     reduction = np.where(np.isnan(reduction), 1 - columns.get("friction_ratio", np.full(count, np.nan)), reduction)
-    force, without = columns.get("friction_force"), columns.get("intrinsic_friction_force")
-    if force is not None and without is not None:
+    pairs = [name for name in _FRICTIONS if {name, f"intrinsic_{name}"} <= columns.keys()]
+    for name in pairs:
+        without = columns[f"intrinsic_{name}"]
         for line, each in zip(lines, without, strict=True):
             if not (each > 0 or np.isnan(each)):
-                raise InvalidInput(f"{path}: line {line}: intrinsic_friction_force must be positive, got {each:g} N")
-        reduction = np.where(np.isnan(reduction), 1 - force / without, reduction)
-    elif "friction_reduction" not in columns and "friction_ratio" not in columns:
+                got = format_si(each, quantities()[name].unit)
+                raise InvalidInput(f"{path}: line {line}: intrinsic_{name} must be positive, got {got}")
+        reduction = np.where(np.isnan(reduction), 1 - columns[name] / without, reduction)
+    if not pairs and "friction_reduction" not in columns and "friction_ratio" not in columns:
         raise InvalidInput(f"{path}: needs a column {FRICTION_COLUMNS}")
     return reduction
 

@@ -67,7 +67,7 @@ TEXT_NAMES: Final = tuple(column.name for column in RUN_COLUMNS if column.is_tex
 _BY_NAME = {column.name: column for column in RUN_COLUMNS}
 FRICTION_COLUMNS: Final = (
     f"{_BY_NAME['friction_reduction'].heading}, or friction_ratio, or {_BY_NAME['friction_force'].heading} and"
-    f" {_BY_NAME['intrinsic_friction_force'].heading}"
+    f" {_BY_NAME['intrinsic_friction_force'].heading}, or friction_coefficient and intrinsic_friction_coefficient"
 )
 """Columns of which one set gives the friction of a run, in words."""
 

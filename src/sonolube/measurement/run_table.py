@@ -23,7 +23,7 @@ from sonolube.measurement.recordings.text_tables import (
     text_tables,
 )
 from sonolube.measurement.run_columns import DIRECTION_COLUMN, DIRECTION_WORDS, TEXT_NAMES, heading
-from sonolube.measurement.run_headings import meaning_at_stake, run_heading
+from sonolube.measurement.run_headings import fits, meaning_at_stake, run_heading
 from sonolube.text.units import unit_description
 from sonolube.vocabulary import quantities
 
@@ -103,13 +103,26 @@ def run_text(path: Path, mapping: RecordingMapping | None = None) -> tuple[TextT
     tables = text_tables(text, layout, mapping.selection.sections if mapping else (), path, allows_short_rows=True)
     if len(tables) > 1:
         raise InvalidInput(f"{path}: has {len(tables)} sections; choose one by selection.sections of the mapping")
-    table = tables[0]
+    table = tables[0] if layout.units_row else _with_units(tables[0])
     if not table.rows:
         raise InvalidInput(f"{path}: needs a head and at least one run")
     if len(table.rows) > _MAX_RUNS:
         raise InvalidInput(f"{path}: has {len(table.rows)} rows, but at most {_MAX_RUNS} runs are read")
     require_rows(table, mapping.rows if mapping else {}, path)
     return table, caveats
+
+
+def _with_units(table: TextTable) -> TextTable:
+    """Table whose labels have the units of the row below them, where that row holds units and nothing else."""
+    if not table.rows:
+        return table
+    cells = [cell.strip(" []()") for cell in table.rows[0][1]]
+    meant = [(run_heading(f"{label} [{cell}]"), cell) for label, cell in zip(table.labels, cells, strict=False)]
+    stated = [found for found, cell in meant if cell and found is not None and found.name not in TEXT_NAMES]
+    if len(stated) < 2 or not all(map(fits, stated)) or any(parse_number(cell, decimal_sign=".") for cell in cells):
+        return table
+    labels = [f"{label} [{cell}]" if cell else label for label, cell in zip(table.labels, cells, strict=False)]
+    return replace(table, labels=labels + table.labels[len(labels) :], rows=table.rows[1:])
 
 
 def assigned_columns(

@@ -117,6 +117,14 @@ def test_friction_of_a_motion_to_and_fro_keeps_its_signs(tmp_path: Path) -> None
     assert "caveats" not in recording.attrs
 
 
+def test_a_force_at_the_limit_of_its_sensor_is_a_caveat(tmp_path: Path) -> None:
+    time = np.arange(0, 20, 0.01)
+    force = 2 + 0.5 * np.random.default_rng(2).standard_normal(time.size)
+    recording = read_recording(written(tmp_path / "clipped.csv", time, np.minimum(force, 2.2)))
+    assert "friction_force stands at its highest value, 2.2 N, in 3" in recording.attrs["caveats"]
+    assert "caveats" not in read_recording(written(tmp_path / "free.csv", time, force)).attrs
+
+
 MAPPING = '[axis]\ncolumn = "Time"\n[text]\nunits_row = true\n[channels.friction_force]\ncolumn = "Channel A"\n'
 
 

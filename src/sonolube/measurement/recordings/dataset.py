@@ -39,6 +39,8 @@ if TYPE_CHECKING:
 _MOST = 3  # samples of a channel that can be damaged; more are a signal
 _REACH = 20.0  # distance from the median over the largest of all other samples
 _FEWEST = 20  # samples of a channel of which one can be judged
+_STANDS = 0.02  # of the samples at one end of the range, from which a channel is saturated
+_VALUES = 50  # different ones, from which a channel is neither switched nor coarse
 _FRICTION = frozenset({"friction_force", "friction_coefficient"})
 _SIGNED_SPEEDS = ("relative_velocity", "sliding_speed", "rotation_speed")
 _SAME_SIGN = 0.2  # of the larger end of a range, up to which the other one is noise or an error of the zero
@@ -84,6 +86,24 @@ def missing_sample_caveat(name: str, values: Floats, *, axis: Floats, axis_label
     else:
         where = f"misses {missing.size} of {values.size} samples, the first at {axis_label} = {axis[first]:.6g}"
     return (f"{name} {where}: numbers are of the others",)
+
+
+def saturation_caveat(name: str, values: Floats, *, unit: str) -> tuple[str, ...]:
+    """Caveat for a channel that stands at its highest or lowest value, as a sensor or an amplifier at its limit does.
+
+    Empty for set points, and for a channel of few values, such as one that is switched or coarsely digitised.
+    """
+    known = values[np.isfinite(values)]
+    if name.endswith(_SET_POINT) or known.size < _FEWEST:
+        return ()
+    for end, word in ((known.max(), "highest"), (known.min(), "lowest")):
+        share = float(np.mean(known == end))
+        if share > _STANDS and np.unique(known).size > _VALUES:
+            return (
+                f"{name} stands at its {word} value, {end:.4g} {unit}, in {share:.0%} of the samples: its sensor or"
+                " amplifier may be saturated, and each mean too small in magnitude",
+            )
+    return ()
 
 
 _LARGEST_READING = 1e30  # in any unit; keeps powers of samples within the range of a float
@@ -198,7 +218,7 @@ def _uneven(axis: Floats, quantity: str) -> list[str]:
 def _damaged(
     variables: Mapping[str, tuple[str, Floats, dict[str, str | float]]], axis: Floats, quantity: str
 ) -> list[str]:
-    """Caveats on damaged and missing samples of all channels."""
+    """Caveats on damaged, missing and saturated samples of all channels."""
     label = f"{quantity} [{unit_of(quantity) or '1'}]"
     return [
         caveat
@@ -206,6 +226,7 @@ def _damaged(
         for caveat in (
             *damaged_sample_caveats(name, values, unit=str(attributes["units"]), axis=axis, axis_label=label),
             *missing_sample_caveat(name, values, axis=axis, axis_label=label),
+            *saturation_caveat(name, values, unit=str(attributes["units"])),
         )
     ]
 
