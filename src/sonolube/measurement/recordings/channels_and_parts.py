@@ -7,7 +7,7 @@ import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import datetime, timedelta
+from datetime import date, datetime, timedelta
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,7 +22,7 @@ from sonolube.measurement.recordings.mapping import Selection
 if TYPE_CHECKING:
     import xarray as xr
 
-TIME_LABELS = frozenset({"time", "t", "x_value", "timestamp", "elapsed_time"})
+TIME_LABELS = frozenset({"time", "t", "x_value", "timestamp", "elapsed_time", "run_time", "test_time", "zeit"})
 """Names of columns that hold the time of a recording."""
 
 _UNIT_OF_LABEL = re.compile(r"(?:\[([^\[\]]*)\]|\(([^()]*)\))(?: #\d+)?\Z")
@@ -148,6 +148,44 @@ def begun_at(text: str) -> datetime | None:
         return datetime(year, month, day, hour, minute, second) + timedelta(seconds=float(f"0.{match[7] or 0}"))
     except (ValueError, OverflowError):
         return None
+
+
+_CLOCK = re.compile(
+    r"(?:(?P<day>\d{1,2})\.(?P<month>\d{1,2})\.(?P<year>\d{4})[ T]+|(?P<iso>\d{4}-\d{2}-\d{2})[ T]+)?"
+    r"(?P<h>\d{1,2}):(?P<m>\d{2}):(?P<s>\d{2}(?:[.,]\d{1,9})?)Z?",
+    re.ASCII,
+)
+_DAY = 86400.0  # s
+
+
+def stamped_seconds(cells: Sequence[str]) -> Floats | None:
+    """Seconds since the first of time stamps, with or without a date; None where a cell is none.
+
+    Without a date the clock of a day goes on after midnight.
+    """
+    stamps = [_CLOCK.fullmatch(cell.strip()) for cell in cells]
+    days = [None if stamp is None else _day(stamp) for stamp in stamps]
+    if not cells or None in days:
+        return None
+    clock = np.array([_seconds_of_day(stamp) for stamp in stamps if stamp is not None])
+    passed = np.array(days, dtype=np.float64) - float(days[0] or 0)
+    passed += np.cumsum((np.diff(clock + _DAY * passed, prepend=clock[0]) < -_DAY / 2) & (passed == 0))
+    return np.asarray(clock - clock[0] + _DAY * passed)
+
+
+def _day(stamp: re.Match[str]) -> int | None:
+    """Number of the day of a time stamp, 0 without a date; None for a date that does not exist."""
+    try:
+        if stamp["iso"]:
+            return date.fromisoformat(stamp["iso"]).toordinal()
+        return date(int(stamp["year"]), int(stamp["month"]), int(stamp["day"])).toordinal() if stamp["day"] else 0
+    except ValueError:
+        return None
+
+
+def _seconds_of_day(stamp: re.Match[str]) -> float:
+    """Seconds of a time stamp since midnight."""
+    return 3600.0 * int(stamp["h"]) + 60.0 * int(stamp["m"]) + float(stamp["s"].replace(",", "."))
 
 
 def time_shifts(times: Sequence[Floats], starts: Sequence[datetime | None]) -> tuple[list[float], bool]:

@@ -5,6 +5,7 @@ Caveats name samples far beyond all others of their channel, as a lost bit leave
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
+from functools import cache
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -125,6 +126,10 @@ def recording_dataset(
     axis = _axis(table, path, mapping, sources, quantity)
     if axis.size == 0:
         raise InvalidInput(f"{path}: holds no samples")
+    if not partial and quantity == "time" and (even := _unrounded(axis)) is not None:
+        rate = f"{1 / (even[1] - even[0]):.6g}"
+        rounded = f"the clock repeats itself, as one of rounded times does: its samples are taken as {rate} a second"
+        axis, table = even, replace(table, caveats=(*table.caveats, rounded))
     require_increasing_axis(axis, quantity=quantity, path=path, place=table.place)
     variables = {name: (quantity, *_channel(name, table, path, source, partial)) for name, source in sources.items()}
     if not variables:
@@ -296,7 +301,13 @@ def _channel_sources(
 def _name_and_unit(column: RawColumn) -> tuple[str, str | None]:
     """Name of a channel from the label of its column, and the unit stated for it."""
     name, unit = name_and_unit(column.label)
-    return name, column.unit if column.unit is not None else unit
+    return _friction_words().get(name, name), column.unit if column.unit is not None else unit
+
+
+@cache
+def _friction_words() -> Mapping[str, str]:
+    """Quantity of friction by each other heading that the vocabulary has for it, as a name of a channel."""
+    return {name_and_unit(word)[0]: quantity for quantity in _FRICTION for word in quantities()[quantity].also}
 
 
 def _channel(
@@ -364,6 +375,18 @@ def _axis(
     if interval is None or not (np.isfinite(start) and np.isfinite(interval) and interval > 0):
         raise InvalidInput(f"{path}: the time between samples is {interval!r} s")
     return start + interval * (table.first_row + np.arange(rows, dtype=np.float64))
+
+
+def _unrounded(time: Floats) -> Floats | None:
+    """Even times of a clock that was rounded to coarser steps than its samples; None where it was not."""
+    steps = np.diff(time)
+    if steps.size < _FEWEST or np.all(steps > 0) or np.any(steps < 0) or not np.any(steps > 0):
+        return None
+    slope, start = np.polyfit(np.arange(time.size), time, 1)
+    even = start + slope * np.arange(time.size)
+    if np.max(np.abs(time - even)) > np.min(steps[steps > 0]):
+        return None
+    return np.asarray(even + (time[0] - even[0]))
 
 
 def _require_one_axis(axis: RawColumn, table: RawTable, path: Path) -> None:

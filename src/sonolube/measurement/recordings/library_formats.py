@@ -99,6 +99,7 @@ class Hdf5:
             return table_from_attributes(columns, attributes, path, self.name)
 
 
+_A_LINE = 6  # values of a line of a universal file, at most
 _SIGNATURES = (b"CDF\1", b"CDF\2", b"CDF\5")  # classic, 64-bit offset, 64-bit data
 
 
@@ -175,14 +176,21 @@ class UniversalFile:
         if not columns:
             raise InvalidInput(f"{path}: holds no time response (data set 58, function type 1)")
         for data in responses:
-            if len(data["data"]) != data["num_pts"]:
+            if len(data["data"]) != data["num_pts"] and not _is_filled(data):
                 raise InvalidInput(f"{path}: a response of {data['num_pts']} values has {len(data['data'])}")
         uneven = [data for data in responses if data["abscissa_spacing"] == 0]
         if uneven and len(responses) > 1:
             raise InvalidInput(f"{path}: unevenly sampled responses must each have a file of their own")
         if uneven:
-            columns.insert(0, RawColumn(label="time", values=np.asarray(uneven[0]["x"], dtype=np.float64), unit="s"))
+            times = np.asarray(uneven[0]["x"][: int(uneven[0]["num_pts"])], dtype=np.float64)
+            columns.insert(0, RawColumn(label="time", values=times, unit="s"))
         return RawTable(columns=tuple(columns), format_name=self.name)
+
+
+def _is_filled(data: dict[str, Any]) -> bool:
+    """Whether a response holds its values and zeros up to the end of its last line."""
+    more = np.asarray(data["data"])[int(data["num_pts"]) :]
+    return 0 < more.size < _A_LINE and not np.any(more)
 
 
 def _column(data: dict[str, Any], labels: Counter[str]) -> RawColumn:
@@ -194,7 +202,7 @@ def _column(data: dict[str, Any], labels: Counter[str]) -> RawColumn:
     evenly_sampled = data["abscissa_spacing"] == 1
     return RawColumn(
         label=label,
-        values=np.asarray(data["data"], dtype=np.float64),
+        values=np.asarray(data["data"][: int(data["num_pts"])], dtype=np.float64),
         unit=unit or None,
         start=float(data["abscissa_min"]) if evenly_sampled else None,
         interval=float(data["abscissa_inc"]) if evenly_sampled else None,

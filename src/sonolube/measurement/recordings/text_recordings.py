@@ -13,7 +13,13 @@ import numpy as np
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_files import detected_decimal_sign, first_lines, parse_number, require_channels
-from sonolube.measurement.recordings.channels_and_parts import TIME_LABELS, begun_at, name_and_unit, time_shifts
+from sonolube.measurement.recordings.channels_and_parts import (
+    TIME_LABELS,
+    begun_at,
+    name_and_unit,
+    stamped_seconds,
+    time_shifts,
+)
 from sonolube.measurement.recordings.lvm_segments import Header, LvmSegment, joined_segments
 from sonolube.measurement.recordings.mapping import RecordingMapping, TextLayout
 from sonolube.measurement.recordings.raw_table import (
@@ -25,6 +31,7 @@ from sonolube.measurement.recordings.raw_table import (
 )
 from sonolube.measurement.recordings.text_tables import (
     TextTable,
+    below_preamble,
     column_values,
     decoded_text,
     is_text,
@@ -59,6 +66,7 @@ class DelimitedText:
         """
         layout = mapping.text if mapping else TextLayout()
         text, caveats = decoded_text(path, encoding=layout.encoding)
+        layout = below_preamble(text, layout)
         tables = text_tables(text, layout, mapping.selection.sections if mapping else (), path)
         sign = layout.decimal_sign or _detected_decimal_sign(tables)
         parts = [_part(table, mapping, sign, frozenset(layout.missing), path) for table in tables]
@@ -96,6 +104,11 @@ def _part(
     for place, label in enumerate(table.labels if requested is None else requested):
         index = place if requested is None else column_of_label(indices, label, path)
         if requested is None and (not label or is_text(table.rows, index, sign, missing)):
+            seconds = stamped_seconds([cells[index] if index < len(cells) else "" for _, cells in table.rows])
+            if seconds is not None and not any(
+                name_and_unit(each)[0] in TIME_LABELS for each in table.labels if each != label
+            ):
+                columns.append(RawColumn(label="time", values=seconds, unit="s"))
             continue
         values = column_values(table.rows, index, label, sign, missing, path)
         unit = table.units[index] if index < len(table.units) else ""
@@ -103,6 +116,15 @@ def _part(
     if not columns:
         raise InvalidInput(f"{path}: line {table.rows[0][0]}: no column holds numbers")
     return columns
+
+
+def _clock(table: TextTable, index: int) -> list[RawColumn]:
+    """Time by a column of time stamps, where no other column has the time."""
+    others = (label for place, label in enumerate(table.labels) if place != index)
+    if any(name_and_unit(label)[0] in TIME_LABELS for label in others):
+        return []
+    seconds = stamped_seconds([cells[index] if index < len(cells) else "" for _, cells in table.rows])
+    return [] if seconds is None else [RawColumn(label="time", values=seconds, unit="s")]
 
 
 def _requested_labels(mapping: RecordingMapping | None, labels: list[str]) -> list[str] | None:

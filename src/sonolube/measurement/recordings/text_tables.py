@@ -8,7 +8,7 @@ import csv
 import io
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
 
@@ -82,6 +82,8 @@ def is_text(rows: Sequence[NumberedCells], index: int, decimal_sign: str, missin
 
 
 _SEPARATORS = "\t;,|"
+_FEWEST_LINES = 8  # of a file in which a preamble is sought
+_LONGEST_PREAMBLE = 400  # lines
 _MAX_LISTED = 12
 
 
@@ -185,7 +187,8 @@ def _table(
     separator = layout.separator or _detected_separator(lines[header : header + 1])
     rows = _rows(lines, header, end, separator, layout, path)
     line, cells = _next_row(rows, header + 1)
-    labels = [one_line(label) for label in cells]
+    is_headless = len(cells) > 1 and all(_is_number(cell) for cell in cells)
+    labels = [f"column {place}" if is_headless else one_line(label) for place, label in enumerate(cells, start=1)]
     while labels and not labels[-1]:
         labels.pop()
     if not labels:
@@ -193,6 +196,8 @@ def _table(
     require_channels(len(labels), path, kind="columns")
     units = [one_line(cell) for cell in _next_row(rows, line + 1)[1]] if layout.units_row else []
     body, unread = _body(rows, len(labels), path, allows_short_rows)
+    if is_headless:
+        body.insert(0, (line, cells))
     return TextTable(
         section=name,
         begun=_begun("".join(lines[first - 1 if layout.section else 0 : header]), layout, path),
@@ -220,6 +225,36 @@ def _is_row(line: str, layout: TextLayout) -> bool:
     """Whether a line is neither blank nor a comment."""
     text = line.strip()
     return bool(text) and not (layout.comment and text.startswith(layout.comment))
+
+
+def _is_number(cell: str) -> bool:
+    """Whether a cell holds a number, whatever its decimal sign."""
+    return any(parse_number(cell, decimal_sign=sign) is not None for sign in ".,")
+
+
+def below_preamble(text: str, layout: TextLayout) -> TextLayout:
+    """Layout of an export without one of its own, with the lines of a preamble before the labels to skip.
+
+    The labels are the last line of as many cells as the rows of the middle of the file have before the first row of
+    numbers. Where the first line has as many cells, or nothing is found, the layout stays.
+    """
+    lines = text.splitlines()
+    filled = [line for line in lines if line.strip()]
+    if layout != TextLayout() or len(filled) < _FEWEST_LINES:
+        return layout
+    middle = filled[len(filled) // 2 : len(filled) // 2 + 3]
+    for separator in _SEPARATORS:
+        widths = {line.count(separator) for line in middle}
+        if len(widths) != 1 or not (width := widths.pop()) or filled[0].count(separator) == width:
+            continue
+        rows = [(at, line.split(separator)) for at, line in enumerate(lines[:_LONGEST_PREAMBLE])]
+        wide = [(at, cells) for at, cells in rows if len(cells) == width + 1]
+        numbers = next(
+            (place for place, (_, cells) in enumerate(wide) if sum(map(_is_number, cells)) > width / 2), None
+        )
+        if numbers:
+            return replace(layout, lines_to_skip=wide[numbers - 1][0], separator=separator)
+    return layout
 
 
 def _next_row(rows: Iterator[NumberedCells | None], line: int) -> NumberedCells:
