@@ -160,17 +160,19 @@ def a_map(kind: str, **dims: list[float]) -> xr.Dataset:
 RIG: Any = SimpleNamespace(normal_load=5.0, contact=SimpleNamespace(nominal_area=2e-6), drive=None)
 
 
-def power_map() -> xr.Dataset:
+def power_map(growth: float = 0.0) -> xr.Dataset:
+    """Map over power, which grows by a share from load to load."""
     found = a_map(
         "velocity-power", normal_load=[2.0, 4.0, 6.0], voltage_peak_to_peak=[10.0, 20.0], sliding_speed=[0.0, 0.1]
     )
-    return found.assign_coords(power_to_supply=(("normal_load", "voltage_peak_to_peak"), [[1.0, 4.0]] * 3))
+    powers = [[1.0 + each, 4.0 * (1.0 + each)] for each in (0.0, growth, 2 * growth)]
+    return found.assign_coords(power_to_supply=(("normal_load", "voltage_peak_to_peak"), powers))
 
 
 def test_a_power_follows_from_the_voltage_of_a_run_where_none_was_measured() -> None:
-    known = {"sliding_speed": [0.05] * 3, "normal_load": [4.0] * 3, "friction_reduction": [0.3] * 3}
-    placed, _ = runs_on_map(runs(**known, voltage_peak_to_peak=[15.0, 20.0, 25.0]), RIG, power_map())
-    assert placed["power_to_supply"].values.tolist() == [2.5, 4.0]  # halfway; 25 V lie beyond the map
+    known = {"sliding_speed": [0.05] * 3, "normal_load": [4.0, 5.8, 4.0], "friction_reduction": [0.3] * 3}
+    placed, _ = runs_on_map(runs(**known, voltage_peak_to_peak=[15.0, 20.0, 25.0]), RIG, power_map(1.0))
+    assert placed["power_to_supply"].values.tolist() == [5.0, 12.0]  # halfway; under 6 N; 25 V lie beyond the map
     measured, _ = runs_on_map(runs(**known, actuator_power=[2.0, 3.0, 1.0]), RIG, power_map())
     assert measured["power_to_supply"].values.tolist() == [2.0, 3.0, 1.0]
 

@@ -6,11 +6,12 @@ from itertools import combinations
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
+from scipy.stats import multivariate_normal
 from tests.same import same
 from tests.tiers import examples
 
 from sonolube.checks import Floats
-from sonolube.design.test_plan.information import ModelOutcomes, best_batch, mutual_information
+from sonolube.design.test_plan.information import ModelOutcomes, _Mixture, _terms, best_batch, mutual_information
 
 DRAWS = 512
 
@@ -136,3 +137,15 @@ def test_points_outside_the_allowed_ones_are_not_chosen() -> None:
     models = [uncertain(each, 0.5, speeds, length=1.0, spread=0.5, discrepancy=0.05) for each in (1, 2)]
     batch = best_batch(models, count=2, noise=np.full(9, 0.03), allowed=np.array([1, 3, 8]))
     assert set(batch.points) <= {1, 3, 8}
+
+
+def test_the_density_of_a_mixture_is_the_mean_of_those_of_its_parts() -> None:
+    rng = np.random.default_rng(6)
+    means, outcomes = rng.uniform(0.0, 1.0, (3, 2)), rng.uniform(0.0, 1.0, (3, 2))
+    factor = np.array([np.linalg.cholesky(np.diag(rng.uniform(0.02, 0.1, 2)) + 0.01) for _ in range(3)])
+    pairs = zip(means, factor, strict=True)
+    parts = np.array([multivariate_normal(mean, each @ each.T).pdf(outcomes) for mean, each in pairs])
+    mixture = _Mixture.of(means, factor)
+    assert np.exp(mixture.log_density(_terms(outcomes), own=False)) == pytest.approx(parts.mean(axis=0))
+    others = (parts.sum(axis=0) - np.diagonal(parts)) / 2
+    assert np.exp(mixture.log_density(_terms(outcomes), own=True)) == pytest.approx(others)
