@@ -73,10 +73,9 @@ def _runs(table: RunTable, path: Path) -> "xr.Dataset":
     """Measured runs of the columns of a table."""
     import xarray as xr
 
-    columns, without = dict(table.columns), np.zeros(len(table.lines), bool)
-    for name in _FRICTIONS:
-        columns, of_name = _with_references(columns, name)
-        without |= of_name
+    columns, without = _with_references(dict(table.columns), _FRICTIONS[0])
+    columns, of_coefficients = _with_references(columns, _FRICTIONS[1])
+    without |= of_coefficients
     _derive_wear(columns)
     reduction = _friction_reductions(path, columns, table.lines)
     columns["friction_reduction"] = reduction

@@ -174,7 +174,7 @@ def _aligned(table: RawTable, path: Path) -> RawTable:
     return replace(table, columns=columns, caveats=(*table.caveats, caveat))
 
 
-_Variables = Mapping[str, tuple[str, Floats, dict[str, str | float]]]
+_Variables = dict[str, tuple[str, Floats, dict[str, str | float]]]
 
 
 def _with_friction_positive(variables: _Variables) -> tuple[_Variables, list[str]]:

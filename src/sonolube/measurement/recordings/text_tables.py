@@ -84,6 +84,7 @@ def is_text(rows: Sequence[NumberedCells], index: int, decimal_sign: str, missin
 _SEPARATORS = "\t;,|"
 _FEWEST_LINES = 8  # of a file in which a preamble is sought
 _LONGEST_PREAMBLE = 400  # lines
+_LOOKED_AT = 1 << 16  # characters of the beginning and of the middle of a file
 _MAX_LISTED = 12
 
 
@@ -238,16 +239,17 @@ def below_preamble(text: str, layout: TextLayout) -> TextLayout:
     The labels are the last line of as many cells as the rows of the middle of the file have before the first row of
     numbers. Where the first line has as many cells, or nothing is found, the layout stays.
     """
-    lines = text.splitlines()
+    lines = text[:_LOOKED_AT].splitlines()[:_LONGEST_PREAMBLE]
     filled = [line for line in lines if line.strip()]
     if layout != TextLayout() or len(filled) < _FEWEST_LINES:
         return layout
-    middle = filled[len(filled) // 2 : len(filled) // 2 + 3]
+    half = len(text) // 2
+    middle = [line for line in text[half : half + _LOOKED_AT].splitlines()[1:-1] if line.strip()][:3] or filled[-3:]
     for separator in _SEPARATORS:
         widths = {line.count(separator) for line in middle}
         if len(widths) != 1 or not (width := widths.pop()) or filled[0].count(separator) == width:
             continue
-        rows = [(at, line.split(separator)) for at, line in enumerate(lines[:_LONGEST_PREAMBLE])]
+        rows = [(at, line.split(separator)) for at, line in enumerate(lines)]
         wide = [(at, cells) for at, cells in rows if len(cells) == width + 1]
         numbers = next(
             (place for place, (_, cells) in enumerate(wide) if sum(map(_is_number, cells)) > width / 2), None
