@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from reliability.shortened_protocols import require_completed
 from sonolube.facts.protocol import protocol_by_name_or_file
 from sonolube.laboratory import Block, Channel, run_protocol
 from sonolube.laboratory.virtual_tribometer import virtual_tribometer
@@ -89,8 +90,7 @@ def recorded_protocol(rig: Rig, protocol: str, *, seed: int) -> "tuple[MemoryRec
     virtual = virtual_tribometer(rig, seed=seed, groove_diameter=_DIAMETER)
     record = MemoryRecord()
     result = run_protocol(protocol_by_name_or_file(protocol), virtual.devices, record, operator=lambda prompt: True)
-    if result.outcome != "completed":
-        raise RuntimeError(result.reason)
+    require_completed(protocol, outcome=result.outcome, reason=result.reason)
     return record, virtual.truth()
 
 

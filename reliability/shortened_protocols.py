@@ -10,13 +10,14 @@ import numpy as np
 
 from sonolube.facts.protocol import Protocol, protocol_from, protocol_path
 from sonolube.laboratory import Block, Channel, run_protocol
-from sonolube.laboratory.virtual_tribometer import virtual_tribometer
+from sonolube.laboratory.virtual_tribometer import Disturbances, virtual_tribometer
 from sonolube.rig import Rig
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Steps = list[dict[str, Any]]
+_BY_SIGNAL = ("interrupted", "terminated", "ended ", "suspended")  # begin the reasons of runs that a signal ended
 
 
 def _until_second_cleaning(steps: Steps, *, whole: str, lasts: str) -> Steps:
@@ -157,13 +158,23 @@ class PartsInMemory:
         """Nothing is open."""
 
 
-def run_shortened(rig: Rig, name: str, *, seed: int) -> "tuple[list[Part], xr.Dataset, float]":
-    """Parts of a shortened protocol on the virtual rig, its truth, and the diameter of the groove in m."""
+def require_completed(name: str, *, outcome: str, reason: str) -> None:
+    """Raise KeyboardInterrupt where a signal ended a run, so that its trial is tried again, and else RuntimeError."""
+    if outcome != "completed":
+        raise (KeyboardInterrupt if reason.startswith(_BY_SIGNAL) else RuntimeError)(f"{name}: {reason}")
+
+
+def run_shortened(
+    rig: Rig, name: str, *, seed: int, disturbances: Disturbances | None = None
+) -> "tuple[list[Part], xr.Dataset, float]":
+    """Parts of a shortened protocol on the virtual rig, its truth, and the diameter of the groove in m.
+
+    A signal that ends the run, with the devices off, raises KeyboardInterrupt: it is no failure of what is tried.
+    """
     protocol = shortened(name)
     diameter = protocol.metadata.groove_diameter or 0.028
-    virtual = virtual_tribometer(rig, seed=seed, groove_diameter=diameter)
+    virtual = virtual_tribometer(rig, seed=seed, groove_diameter=diameter, disturbances=disturbances)
     record = PartsInMemory(virtual, diameter)
     result = run_protocol(protocol, virtual.devices, record, operator=lambda prompt: True)
-    if result.outcome != "completed":
-        raise RuntimeError(f"{name}: {result.reason}")
+    require_completed(name, outcome=result.outcome, reason=result.reason)
     return record.parts, virtual.truth(), diameter

@@ -10,18 +10,24 @@ from scipy import stats
 
 from reliability.shortened_protocols import SHORTENED, Part, run_shortened
 from reliability.study import Measure, Record, Study
+from sonolube.laboratory.virtual_tribometer import Disturbances
 from sonolube.measurement.friction_analysis import analyse_rotation, analyse_voltage_steps
 from sonolube.measurement.statistics.autocorrelation import correlated_mean
 from sonolube.rig import Rig, read_rig
 
 _RIG = Path(__file__).parents[2] / "examples" / "rigs" / "power_map.toml"
 _QUANTITIES = {"level": "friction", "reduction": "its reduction", "temperature": "temperature", "rotation": "rotation"}
+_STICK_SLIP = ("sticking_found", "steady_found")
 _VALUES = 300  # of a quantity, at least
 _MEAN = 0.2
 _SPREAD = (0.85, 1.15)
 _LEVELS = {"68 %": stats.norm.ppf(0.84), "95 %": stats.norm.ppf(0.975)}
 _SHARES = {"68 %": 0.68, "95 %": 0.95}
 _DETECTED, _FALSE = 0.9, 0.05
+_COMPLIANT = "compliant_holder"
+_COMPLIANCE = Disturbances(holder_stiffness=3e3)
+# 39 Hz with its mass: 400 Hz resolve cycles up to 67 Hz, and one below 30 Hz that is nearly a sine counts as wobble
+_SLOW = ("study_1", "study_2")  # at 20 mm/s, where a compliant holder sticks without vibration
 _STICKS, _SAME_VOLTAGE, _SAME_SPEED = 0.5, 0.3, 1e-3
 
 
@@ -31,13 +37,26 @@ def _rig() -> Rig:
 
 
 def _trial(seed: int) -> Record:
-    return {name: _scores(name, seed) for name in SHORTENED}
+    scores = {name: _scores(name, seed) for name in SHORTENED}
+    return {**scores, _COMPLIANT: _on_compliant_holder(seed)}
+
+
+def _on_compliant_holder(seed: int) -> dict[str, list[float]]:
+    """Whether stick-slip is found, where it is and where it is not, with a holder that sticks at low speed."""
+    found: dict[str, list[float]] = {key: [] for key in (*_QUANTITIES, *_STICK_SLIP)}
+    for name in _SLOW:
+        parts, truth, _ = run_shortened(_rig(), name, seed=seed, disturbances=_COMPLIANCE)
+        for part in parts:
+            recording = part.dataset()
+            if (recording["sliding_speed_set"] > 0).any():
+                _add_levels(found, recording, truth)
+    return {key: found[key] for key in _STICK_SLIP}
 
 
 def _scores(name: str, seed: int) -> dict[str, list[float]]:
     """Deviations over stated uncertainty of a protocol, and whether stick-slip is there and is found."""
     parts, truth, diameter = run_shortened(_rig(), name, seed=seed)
-    found: dict[str, list[float]] = {key: [] for key in (*_QUANTITIES, "sticking_found", "steady_found")}
+    found: dict[str, list[float]] = {key: [] for key in (*_QUANTITIES, *_STICK_SLIP)}
     for part in parts:
         recording = part.dataset()
         slides = bool((recording["sliding_speed_set"] > 0).any())
@@ -60,7 +79,7 @@ def _add_levels(found: dict[str, list[float]], recording: Any, truth: Any) -> No
         force = float(truth["friction_force"][known])
         found["level"].append((step.friction_force - force) / step.friction_force_uncertainty)
         share = float(truth["stick_slip_fraction"][known])
-        if share > _STICKS or share == 0:
+        if (share > _STICKS and step.stick_slip.resolved) or share == 0:
             found["sticking_found" if share else "steady_found"].append(float(step.stick_slip.detected))
         still = _setting(truth, step, voltage=0.0)
         if step.friction_reduction is not None and step.friction_reduction_uncertainty and still is not None:
@@ -166,7 +185,7 @@ def _by_protocol(records: Sequence[Record], key: str) -> list[Measure]:
 
 def _stick_slip(records: Sequence[Record]) -> list[Measure]:
     """Share of steps at which stick-slip is found, where it is and where it is not."""
-    there, absent = _pooled(records, "sticking_found"), _pooled(records, "steady_found")
+    there, absent = (_pooled(records, key, (*SHORTENED, _COMPLIANT)) for key in _STICK_SLIP)
     share, false = float(np.mean(there)) if there.size else 0.0, float(np.mean(absent)) if absent.size else 0.0
     return [
         Measure(
@@ -193,7 +212,9 @@ def _sample_measures(records: Sequence[Record]) -> list[Measure]:
 STUDY = Study(
     title="Truth of virtual rigs against measured answers",
     question="All nine shipped protocols on the virtual rig, each shortened to recordings of 30 s: are friction, its"
-    " reduction, temperature and rotation within their uncertainties of the truth, and is stick-slip found?",
+    " reduction, temperature and rotation within their uncertainties of the truth, and is stick-slip found? Studies I"
+    " and II run on a compliant holder too, which sticks at 20 mm/s; stick-slip that is said to be too fast for the"
+    " sampling rate does not count as missed.",
     sources=("laboratory/virtual_tribometer/*.py", "measurement/friction/*.py"),
     trials=100,
     sample=1,
