@@ -88,6 +88,11 @@ def test_a_heading_with_a_missing_or_wrong_unit_is_none(text: str) -> None:
     assert parse_heading(text) is None
 
 
+def test_a_path_may_be_a_text(tmp_path: Path) -> None:
+    (tmp_path / "three.csv").write_text("f,R,X\n1,2,3\n2,3,4\n3,4,5\n")
+    assert read_impedance(str(tmp_path / "three.csv")).impedance.tolist() == [2 + 3j, 3 + 4j, 4 + 5j]
+
+
 WRONG = {
     "empty.csv": ("", r"empty\.csv: is empty"),
     "cells.csv": ("f,R,X\n1,2,3\n2,3\n", r"line 3: has 2 cells where column 3 is required"),

@@ -214,12 +214,12 @@ def passive_spectrum(spectrum: ImpedanceSpectrum) -> tuple[ImpedanceSpectrum, tu
 _LARGEST_FILE = 1 << 28  # bytes; far above any sweep
 
 
-def read_impedance(path: Path, *, sweep: str | None = None) -> ImpedanceSpectrum:
+def read_impedance(path: str | Path, *, sweep: str | None = None) -> ImpedanceSpectrum:
     """Impedance spectrum read from a file.
 
     Parameters
     ----------
-    path : Path
+    path : str or Path
         In any format of `IMPEDANCE_FORMATS`, which is detected by content; touchstone by its suffix.
     sweep : str or None
         Name of one of several sweeps, such as "memory" of a 4294A or a chunk number of an MFIA. None selects the
@@ -237,6 +237,7 @@ def read_impedance(path: Path, *, sweep: str | None = None) -> ImpedanceSpectrum
     UnknownName
         Naming the file, if it has no such sweep.
     """
+    path = Path(path)
     content = sweep_bytes(path)
     lines = _lines(content, path)
     formats = tuple(IMPEDANCE_FORMATS.values())

@@ -164,12 +164,12 @@ def recognised_mapping(path: Path) -> RecordingMapping | None:
     return next((known for known in fitting if re.search(known.recognised_by, text)), None)
 
 
-def read_recording(path: Path, *, mapping: RecordingMapping | Path | None = None) -> "xr.Dataset":
+def read_recording(path: str | Path, *, mapping: RecordingMapping | Path | None = None) -> "xr.Dataset":
     """Recording read from a file.
 
     Parameters
     ----------
-    path : Path
+    path : str or Path
         In any format of `RECORDING_FORMATS`, which is detected by content and then by suffix.
     mapping : RecordingMapping, Path or None
         Assignment of the columns, or the TOML file that holds it. Without it a mapping of the package is taken where
@@ -193,6 +193,7 @@ def read_recording(path: Path, *, mapping: RecordingMapping | Path | None = None
     recording_blocks : the same in blocks, for files larger than memory.
     write_recording : the inverse, as netCDF.
     """
+    path = Path(path)
     file_format = recording_format(path)
     columns = _mapping(mapping, path)
     with recorded_warnings() as complaints:
