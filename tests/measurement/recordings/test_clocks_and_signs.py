@@ -108,13 +108,21 @@ def test_friction_that_the_sensor_has_negative_is_taken_as_positive(tmp_path: Pa
     assert "friction_force is negative by the sign of the sensor" in recording.attrs["caveats"]
 
 
-def test_friction_of_a_motion_to_and_fro_keeps_its_signs(tmp_path: Path) -> None:
+@pytest.mark.parametrize("channel", ["relative_velocity (m/s)", "sliding_speed (m/s)"])
+def test_friction_of_a_motion_to_and_fro_keeps_its_signs(channel: str, tmp_path: Path) -> None:
     time = np.arange(0, 20, 0.01)
     velocity = np.sin(time)
     force = 1.5 * np.sign(velocity) - 1.4
-    recording = read_recording(written(tmp_path / "loops.csv", time, force, ("relative_velocity (m/s)", velocity)))
+    recording = read_recording(written(tmp_path / "loops.csv", time, force, (channel, velocity)))
     assert recording["friction_force"].to_numpy() == approx(force)
     assert "caveats" not in recording.attrs
+
+
+def test_friction_of_a_stroke_back_keeps_the_sign_of_its_velocity(tmp_path: Path) -> None:
+    time = np.arange(0, 2, 0.01)
+    force, velocity = -0.3 + 0.01 * np.cos(50 * time), np.full(time.size, -0.02)
+    recording = read_recording(written(tmp_path / "back.csv", time, force, ("relative_velocity (m/s)", velocity)))
+    assert recording["friction_force"].to_numpy() == approx(force)
 
 
 def test_a_force_at_the_limit_of_its_sensor_is_a_caveat(tmp_path: Path) -> None:

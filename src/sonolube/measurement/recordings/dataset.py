@@ -43,7 +43,7 @@ _FEWEST = 20  # samples of a channel of which one can be judged
 _STANDS = 0.02  # of the samples at one end of the range, from which a channel is saturated
 _VALUES = 50  # different ones, from which a channel is neither switched nor coarse
 _FRICTION = frozenset({"friction_force", "friction_coefficient"})
-_SIGNED_SPEEDS = ("relative_velocity", "sliding_speed", "rotation_speed")
+_VELOCITY, _SPEEDS = "relative_velocity", ("sliding_speed", "rotation_speed")
 _SAME_SIGN = 0.2  # of the larger end of a range, up to which the other one is noise or an error of the zero
 _SET_POINT = "_set"  # end of the names of set points, which are unknown before they are set
 
@@ -180,9 +180,11 @@ _Variables = dict[str, tuple[str, Floats, dict[str, str | float]]]
 def _with_friction_positive(variables: _Variables) -> tuple[_Variables, list[str]]:
     """Channels with the sign of friction reversed where the sensor has it negative in one direction, and the caveats.
 
-    A channel of the speed that changes its sign tells that the friction does.
+    A velocity, or a speed that changes its sign, tells that the friction does: the signs of both belong together.
     """
-    if any(name in variables and _of_both_signs(variables[name][1]) for name in _SIGNED_SPEEDS):
+    if _VELOCITY in variables or any(
+        name in variables and _of_both_signs(variables[name][1]) for name in _SIGNED_SPEEDS
+    ):
         return variables, []
     changed, caveats = dict(variables), []
     for name in _FRICTION & variables.keys():
