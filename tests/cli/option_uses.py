@@ -125,6 +125,7 @@ MODES = {
         {
             "--runs": OWN_RUNS,
             "--mapping": "FOLDER/halved.toml",
+            "--evidence": "FOLDER/posterior.json",
             "--speed": "30,60mm/s",
             "--load": "2,3N",
             "--vibration": "1.2:2.5:3um",
@@ -212,7 +213,12 @@ MODES = {
             "--seed": "1",
         },
     ),
-    "friction": Mode("friction", (RIG,), VIBRATED | {"--model": "kinematic"}, ("--no-interval",)),
+    "friction": Mode(
+        "friction",
+        (RIG,),
+        VIBRATED | {"--model": "kinematic", "--evidence": "FOLDER/posterior.json"},
+        ("--no-interval",),
+    ),
     "wear": Mode("wear", (RIG,), VIBRATED),
     "simulate": Mode("simulate", (RIG,), VIBRATED),
     "response": Mode("response", (RIG,), {"--from": "30kHz", "--to": "20kHz", **LOADED}),
@@ -432,7 +438,7 @@ MODES = {
     "map of chances": Mode(
         "map",
         (str(RIGS / "power_map.toml"), *MAP, "--target-reduction", "60%"),
-        {"--confidence": "40%", "--runs": RUNS},
+        {"--confidence": "40%", "--runs": RUNS, "--evidence": "FOLDER/posterior.json"},
     ),
     "map of a kind": Mode(
         "map",
@@ -454,6 +460,7 @@ MODES = {
             "--seed": "1",
             "--workers": "1",
             "--keep": "OUT/keep",
+            "--evidence": "FOLDER/posterior.json",
             **VIBRATED,
         },
         ("--sobol", "--no-interval"),
@@ -467,6 +474,7 @@ MODES = {
             "--confidence": "50%",
             "--runs": RUNS,
             "--mapping": "FOLDER/reduced.toml",
+            "--evidence": "FOLDER/posterior.json",
             "--over": "structure.tip_mass=80g:120g",
             "--actuator": "catalogue",
             "--catalogue": "FOLDER/catalogue.toml",
@@ -772,7 +780,13 @@ MODES = {
     "lab virtual": Mode(
         "lab virtual",
         (str(RIGS / "power_map.toml"), "--protocol", "FOLDER/short.toml"),
-        {"--protocol": "FOLDER/shorter.toml", "--seed": "1", "--format": "csv", **LOADED},
+        {
+            "--protocol": "FOLDER/shorter.toml",
+            "--evidence": "FOLDER/posterior.json",
+            "--seed": "1",
+            "--format": "csv",
+            **LOADED,
+        },
         ("--dry-run",),
     ),
     "lab virtual with a map": Mode(

@@ -16,6 +16,7 @@ from sonolube.prediction.within_plane import (
     is_predicted,
     plane_caveats,
     plane_extrapolation,
+    plane_posterior,
     plane_rigs,
 )
 from sonolube.rig.vibration_direction import VibrationDirection
@@ -146,7 +147,7 @@ def test_how_far_the_law_was_tested_is_said_by_direction() -> None:
     along, across = (VibrationDirection(direction=word) for word in ("along", "across"))
     assert plane.tested_words(along).endswith("by springs on exponential heights tested with 7 published points")
     assert plane.tested_words(across).endswith("(springs on exponential heights, compared with no experiment)")
-    first, slip, rate = plane_caveats(along)
+    first, slip, rate = plane_caveats(along, plane_posterior())
     assert (
         "7 published points of 3 sources along the sliding, L-1 of Littmann et al. (1.00 where the law has 1.00)"
         in first
@@ -157,7 +158,7 @@ def test_how_far_the_law_was_tested_is_said_by_direction() -> None:
     assert "untested" not in slip
     assert "nm within a factor of" in slip
     assert rate == "of M of Luo et al. the friction ratio falls with the sliding speed, against every law without rate"
-    other, wider, _ = plane_caveats(across)
+    other, wider, _ = plane_caveats(across, plane_posterior())
     assert "theory alone" in other
     assert wider.endswith("for an untested direction the interval is wider, by an assumption")
     assert exp(log(LOWEST)) == approx(8.74e-4, rel=1e-3)

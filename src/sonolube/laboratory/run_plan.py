@@ -20,6 +20,7 @@ from sonolube.laboratory.interlocks import RunLimits, drive_sampling, idle_rate,
 from sonolube.laboratory.records import UNRESOLVED, RunRecorder, new_run
 from sonolube.laboratory.supervision import LATE
 from sonolube.operating_system import home_folder, process_start, remove_file
+from sonolube.prediction.evidence_posterior import EvidencePosterior
 from sonolube.rig import Rig
 from sonolube.storage.files import is_locked, locked_folder, write_atomically
 from sonolube.storage.user_files import input_text
@@ -246,6 +247,8 @@ class RunRequest:
     tags : sequence of str
     facts : mapping of str to str or float
         What is known besides, such as operator, humidity or the date of a calibration; before those of the protocol.
+    evidence : EvidencePosterior or None
+        That a virtual rig draws its friction from, in place of the shipped posterior.
     """
 
     protocol: Protocol
@@ -255,6 +258,12 @@ class RunRequest:
     seed: int = 0
     tags: Sequence[str] = ()
     facts: Mapping[str, str | float] = field(default_factory=dict)
+    evidence: EvidencePosterior | None = None
+
+    @property
+    def evidence_caveats(self) -> tuple[str, ...]:
+        """Own published tests that the friction of a virtual rig was learned from too."""
+        return () if self.evidence is None or self.rig is None else self.evidence.caveats(self.rig.direction)
 
 
 def begin_record(
@@ -303,6 +312,8 @@ def _facts(request: RunRequest, devices: Devices, limits: RunLimits) -> dict[str
         facts["tags"] = ", ".join(request.tags)
     if devices.simulated:
         facts["seed"] = request.seed
+    if request.evidence_caveats:
+        facts["evidence"] = "; ".join(request.evidence_caveats)
     if rig is not None:
         facts |= {
             "normal_load": facts.get("normal_load", rig.normal_load),

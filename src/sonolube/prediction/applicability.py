@@ -12,20 +12,15 @@ from sonolube.errors import InvalidInput, MissingProperty, SonolubeError
 from sonolube.models.thermal import EllipticSource, ThermalSolid, contact_rise
 from sonolube.prediction.bodies import named_bodies, softer_hardness
 from sonolube.prediction.evidence import REFERENCE_DECAY_LENGTH, Conditions, published_rigs
+from sonolube.prediction.evidence_posterior import EvidencePosterior, population_of
 from sonolube.prediction.hierarchy import central_interval
 from sonolube.prediction.inputs import RigInputs, rig_inputs, within_plane_refusal
-from sonolube.prediction.posterior import learned
 from sonolube.prediction.predictive import DRAWS, ratio_draws
-from sonolube.prediction.within_plane import (
-    is_predicted,
-    plane_caveats,
-    plane_extrapolation,
-    plane_posterior,
-    within_plane,
-)
+from sonolube.prediction.within_plane import is_predicted, plane_caveats, plane_extrapolation, within_plane
 from sonolube.rig import ResolvedRig, Rig, thermal_solid
 from sonolube.rig.contact_temperature import spot_rise
 from sonolube.rig.resolved_rig import resolved_rig
+from sonolube.rig.vibration_direction import VibrationDirection
 from sonolube.text.units import format_si
 from sonolube.validation.published_tests import friction_tests
 
@@ -69,7 +64,7 @@ class Applicability:
     beyond_tests: tuple[str, ...] = ()
 
 
-def applicability(rig: Rig, *, lubricant: bool = False) -> Applicability:
+def applicability(rig: Rig, *, lubricant: bool = False, evidence: EvidencePosterior | None = None) -> Applicability:
     """Direction, bodies, lubricant and frequency of a rig against what predictions are learned from.
 
     Refused are a vibration along the normal and within the plane at once, and soft bodies: polymers, rubber, felt,
@@ -79,13 +74,19 @@ def applicability(rig: Rig, *, lubricant: bool = False) -> Applicability:
     """
     lubricated = _lubrication(rig, lubricant=lubricant)
     beyond = (*lubricated, *_frequency(rig), *_roughness(rig))
-    tested = plane_caveats(rig.direction) if is_predicted(rig.direction) else ()
+    tested = _within_plane(rig.direction, evidence) if is_predicted(rig.direction) else ()
     return Applicability(
         refusal=_in_plane(rig) or _soft(rig) or _crushed(rig),
         caveats=(*tested, *beyond),
         any_ratio=bool(lubricated),
         beyond_tests=beyond,
     )
+
+
+def _within_plane(direction: VibrationDirection, evidence: EvidencePosterior | None) -> tuple[str, ...]:
+    """Caveats of a vibration within the plane by the posterior that predicts it."""
+    own = "" if evidence is None else evidence.own_within_plane
+    return plane_caveats(direction, population_of(direction, evidence), own=own)
 
 
 def _in_plane(rig: Rig) -> str | None:
@@ -280,12 +281,15 @@ class FrictionInterval:
         Between them.
     reason : str
         Why there is none.
+    caveats : tuple of str
+        Own published tests that it was learned from too.
     """
 
     low: float | None = None
     high: float | None = None
     median: float | None = None
     reason: str = ""
+    caveats: tuple[str, ...] = ()
 
     @property
     def text(self) -> str:
@@ -296,9 +300,10 @@ class FrictionInterval:
         return f"{middle}{self.low:.2g} to {self.high:.2g} (80 %, `sonolube predict`)"
 
 
-def friction_interval(rig: Rig | ResolvedRig) -> FrictionInterval:
+def friction_interval(rig: Rig | ResolvedRig, *, evidence: EvidencePosterior | None = None) -> FrictionInterval:
     """Interval of the friction ratio of a rig at its operating point, without own runs; equal to that of `predict`."""
     resolved = resolved_rig(rig)
+    direction = resolved.rig.direction
     try:
         limits = applicability(resolved.rig)
         if limits.refusal:
@@ -308,7 +313,11 @@ def friction_interval(rig: Rig | ResolvedRig) -> FrictionInterval:
         at = rig_inputs(resolved, takes_plane=True).at()
     except SonolubeError as refusal:
         return FrictionInterval(reason=str(refusal))
-    posterior = learned().friction if resolved.rig.direction.is_normal else plane_posterior()
-    draws = ratio_draws(posterior, at, count=DRAWS)[:, 0]
+    draws = ratio_draws(population_of(direction, evidence), at, count=DRAWS)[:, 0]
     low, high = central_interval(draws, 0.8)
-    return FrictionInterval(low=float(low), high=float(high), median=float(np.median(draws)))
+    return FrictionInterval(
+        low=float(low),
+        high=float(high),
+        median=float(np.median(draws)),
+        caveats=() if evidence is None else evidence.caveats(direction),
+    )

@@ -12,7 +12,7 @@ from sonolube.prediction.evidence import CLOSURES, TestedRig, published_rigs, ri
 from sonolube.prediction.hierarchy import Prior, central_interval, continuous_ranked_probability_score, interval_score
 from sonolube.prediction.posterior import Population, Posterior, published_population
 from sonolube.prediction.predictive import ratio_draws
-from sonolube.prediction.within_plane import plane_posterior, plane_rigs
+from sonolube.prediction.within_plane import PlanePopulation, plane_population
 
 BLIND: Final = "decay length unknown"
 """Name of the way that predicts: nothing enters that a user would not have before a test."""
@@ -180,13 +180,16 @@ def blind_calibration(groups: tuple[tuple[str, ...], ...] = ()) -> Calibration:
     return population_calibration(BLIND, published_population(), published_rigs(), groups=groups)
 
 
-@cache
-def plane_calibration() -> Calibration:
-    """Calibration within the plane of contact: each published point, by the others there and those along the normal."""
+def plane_calibration(population: PlanePopulation | None = None) -> Calibration:
+    """Calibration within the plane of contact, by default of the shipped tests.
+
+    Each rig by the others there and those along the normal.
+    """
+    known = population or plane_population()
     predictions = [
         one
-        for place, rig in enumerate(plane_rigs())
-        for one in _unseen(rig, ratio_draws(plane_posterior(without=(place,)), rig.at, count=_DRAWS))
+        for place, rig in enumerate(known.rigs)
+        for one in unseen_predictions(rig, ratio_draws(known.posterior(without=(place,)), rig.at, count=_DRAWS))
     ]
     return Calibration(name="within the plane", predictions=tuple(predictions))
 
@@ -210,13 +213,13 @@ def population_calibration(
         places = tuple(place for place, rig in enumerate(rigs) if rig.name in group)
         posterior = population.posterior(without=places)
         for place in places:
-            predictions += _unseen(rigs[place], ratio_draws(posterior, rigs[place].at, count=_DRAWS))
+            predictions += unseen_predictions(rigs[place], ratio_draws(posterior, rigs[place].at, count=_DRAWS))
     return _in_order(name, predictions, rigs)
 
 
 def prediction_of_others(posterior: Posterior, rigs: Sequence[TestedRig], *, name: str = "") -> Calibration:
     """Calibration of rigs that a posterior was not learned from."""
-    found = [one for rig in rigs for one in _unseen(rig, ratio_draws(posterior, rig.at, count=_DRAWS))]
+    found = [one for rig in rigs for one in unseen_predictions(rig, ratio_draws(posterior, rig.at, count=_DRAWS))]
     return Calibration(name=name, predictions=tuple(found))
 
 
@@ -229,7 +232,7 @@ def _rival_calibration(
         others = [rig for rig in rigs if rig.name not in group]
         for rig in rigs:
             if rig.name in group:
-                predictions += _unseen(rig, rival(others, rig, np.random.default_rng(5)))
+                predictions += unseen_predictions(rig, rival(others, rig, np.random.default_rng(5)))
     return _in_order(name, predictions, rigs)
 
 
@@ -239,8 +242,11 @@ def _in_order(name: str, predictions: Sequence[UnseenPrediction], rigs: Sequence
     return Calibration(name=name, predictions=tuple(sorted(predictions, key=lambda one: places[one.rig])))
 
 
-def _unseen(rig: TestedRig, ratios: Floats) -> list[UnseenPrediction]:
-    """Predictions of the tests of a rig, with the uncertainty of each measurement."""
+def unseen_predictions(rig: TestedRig, ratios: Floats) -> list[UnseenPrediction]:
+    """Predictions of the tests of a rig by draws of their ratios, with the uncertainty of each measurement.
+
+    `ratios` has shape (draws, n).
+    """
     noise = np.random.default_rng(4).standard_normal(ratios.shape) * rig.uncertainty
     return [
         UnseenPrediction(rig=rig.name, friction_ratio=float(y), uncertainty=float(u), draws=draws)

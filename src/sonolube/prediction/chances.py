@@ -9,10 +9,9 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.prediction.applicability import applicability
+from sonolube.prediction.evidence_posterior import EvidencePosterior, population_of
 from sonolube.prediction.inputs import RigInputs, own_runs, rig_inputs
-from sonolube.prediction.posterior import learned
 from sonolube.prediction.predictive import RigPrediction, rig_prediction
-from sonolube.prediction.within_plane import plane_posterior
 from sonolube.rig import Rig
 
 if TYPE_CHECKING:
@@ -35,11 +34,14 @@ class ReductionChances:
     prediction : RigPrediction
     runs : int
         Own runs that the prediction rests on.
+    caveats : tuple of str
+        Own published tests that it was learned from too.
     """
 
     inputs: RigInputs
     prediction: RigPrediction
     runs: int
+    caveats: tuple[str, ...] = ()
 
     def of(
         self,
@@ -135,7 +137,9 @@ class ReductionChances:
         return float(low), float(middle), float(high)
 
 
-def reduction_chances(rig: Rig, *, runs: "xr.Dataset | None" = None) -> ReductionChances:
+def reduction_chances(
+    rig: Rig, *, runs: "xr.Dataset | None" = None, evidence: EvidencePosterior | None = None
+) -> ReductionChances:
     """Chances that a rig reaches a reduction of friction.
 
     Parameters
@@ -143,6 +147,8 @@ def reduction_chances(rig: Rig, *, runs: "xr.Dataset | None" = None) -> Reductio
     rig : Rig
     runs : xarray.Dataset, optional
         Own measured runs over `run`, as `predict` takes them.
+    evidence : EvidencePosterior, optional
+        Posterior by own published tests too, in place of the shipped one.
 
     Returns
     -------
@@ -160,10 +166,14 @@ def reduction_chances(rig: Rig, *, runs: "xr.Dataset | None" = None) -> Reductio
         raise InvalidInput(f"{rig.title}: chances of a reduction need a dry contact, or runs of your own")
     inputs = rig_inputs(rig, takes_plane=True)
     own = None if runs is None else own_runs(runs, inputs, title=rig.title)
-    posterior = learned().friction if inputs.direction.is_normal else plane_posterior()
     tested = None if own is None else own.tested
-    found = rig_prediction(posterior, inputs.at(), count=_DRAWS, own=tested)
-    return ReductionChances(inputs=inputs, prediction=found, runs=0 if tested is None else tested.friction_ratio.size)
+    found = rig_prediction(population_of(inputs.direction, evidence), inputs.at(), count=_DRAWS, own=tested)
+    return ReductionChances(
+        inputs=inputs,
+        prediction=found,
+        runs=0 if tested is None else tested.friction_ratio.size,
+        caveats=() if evidence is None else evidence.caveats(inputs.direction),
+    )
 
 
 def _nodes(logs: Floats, count: int) -> Floats:

@@ -5,7 +5,7 @@ as shipped ones and rigs are left out at no cost.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
@@ -15,19 +15,37 @@ from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.prediction.calibration import (
     Calibration,
+    blind_calibration,
     mean_ratio_calibration,
+    plane_calibration,
     population_calibration,
     prediction_of_others,
 )
 from sonolube.prediction.evidence import CLOSURES, TestedRig, published_rigs, tested_rig
-from sonolube.prediction.evidence_posterior import EvidencePosterior, learned_sources
-from sonolube.prediction.posterior import Population, evidence_fingerprint, rig_digits, systematic_rows
-from sonolube.prediction.published_source import PublishedSource, in_order, read_source, shipped_sources
+from sonolube.prediction.evidence_posterior import EvidencePosterior, learned_sources, shipped_fingerprint
+from sonolube.prediction.posterior import (
+    Population,
+    evidence_fingerprint,
+    published_likelihood,
+    rig_digits,
+    systematic_rows,
+)
+from sonolube.prediction.published_source import PublishedRig, PublishedSource, in_order, read_source, shipped_sources
+from sonolube.prediction.within_plane import (
+    SPRINGS,
+    PlanePopulation,
+    plane_population,
+    plane_posterior,
+    plane_rig,
+    plane_rigs,
+)
 
 _KEPT: Final = 2048  # draws of the file
 _SECONDS_A_RIG: Final = 0.6
 _SECONDS_A_PAIR: Final = 0.06  # of points of one rig
+_SECONDS_A_POINT: Final = 0.05  # within the plane
 _FEW_DRAWS: Final = 300  # effective draws below which the intervals are rough
+_FEW_PLANE_DRAWS: Final = 100  # likewise, of fewer draws
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -57,30 +75,27 @@ class LearnedEvidence:
     posterior : EvidencePosterior
     scores : tuple of EvidenceScore
         Those of the shipped tests by the shipped ones first.
-    effective_draws : float
+    effective_draws, effective_draws_within_plane : float
         Effective number of the weighed draws.
-    within_plane : tuple of str
-        Own rigs whose vibration is within the plane, from which nothing was learned.
     """
 
     posterior: EvidencePosterior
     scores: tuple[EvidenceScore, ...]
     effective_draws: float
-    within_plane: tuple[str, ...]
+    effective_draws_within_plane: float
 
     @property
     def caveats(self) -> tuple[str, ...]:
-        """What the draws are worth, what was left out, and what is not learned."""
-        found = [
-            f"{name}: vibration within the plane, of which nothing is learned yet; it was only checked"
-            for name in self.within_plane
-        ]
-        if self.effective_draws < _FEW_DRAWS:
-            found.append(
-                f"the tests speak for {self.effective_draws:.0f} of the draws from the prior alone, so that intervals"
-                " are rough: does a test contradict all others?"
+        """What the draws are worth."""
+        return tuple(
+            f"the tests speak for {count:.0f} of the draws from the prior {where} alone, so that intervals are rough:"
+            " does a test contradict all others?"
+            for where, count, few in (
+                ("along the normal", self.effective_draws, _FEW_DRAWS),
+                ("within the plane", self.effective_draws_within_plane, _FEW_PLANE_DRAWS),
             )
-        return tuple(found)
+            if count < few
+        )
 
 
 def read_sources(places: Sequence[str | Path]) -> tuple[PublishedSource, ...]:
@@ -123,32 +138,54 @@ def own_rigs(sources: Sequence[PublishedSource]) -> tuple[TestedRig, ...]:
     InvalidInput
         If a rig is there twice, or is a shipped one.
     """
-    seen = {tuple(map(str, rig_digits(rig))): f"set {rig.name} that ships with sonolube" for rig in published_rigs()}
+    return _own_rigs(sources, is_normal=True)
+
+
+def own_plane_rigs(sources: Sequence[PublishedSource]) -> tuple[TestedRig, ...]:
+    """Rigs of own sources with vibration within the plane, refused as of `own_rigs`."""
+    return _own_rigs(sources, is_normal=False)
+
+
+def _own_rigs(sources: Sequence[PublishedSource], *, is_normal: bool) -> tuple[TestedRig, ...]:
+    """Rigs of own sources in directions of one law."""
+    shipped = [(rig, one) for source in shipped_sources() for rig in source.rigs for one in _taken(rig, is_normal)]
+    seen = {_numbers(rig, one): f"set {one.name} that ships with sonolube" for rig, one in shipped}
     found: dict[str, TestedRig] = {}
     for source in sources:
         for rig in source.rigs:
-            name = f"{rig.section.set} of {source.title}"
-            one = tested_rig(rig, name=name) if rig.is_normal else None
-            if one is None:
-                continue
-            digits = tuple(map(str, rig_digits(one)))
-            if digits in seen:
-                raise InvalidInput(
-                    f"{source.file}: set {rig.section.set} has the numbers of {seen[digits]}; a test that counts twice"
-                    " makes intervals too narrow: leave it out"
-                )
-            if name in found:
-                raise InvalidInput(f"{source.file}: set {name} is there twice; name each set of its own")
-            seen[digits] = f"set {name}"
-            found[name] = one
+            for one in _taken(rig, is_normal):
+                name, numbers = f"{rig.section.set} of {source.title}", _numbers(rig, one)
+                if numbers in seen:
+                    raise InvalidInput(
+                        f"{source.file}: set {rig.section.set} has the numbers of {seen[numbers]}; a test that counts"
+                        " twice makes intervals too narrow: leave it out"
+                    )
+                if name in found:
+                    raise InvalidInput(f"{source.file}: set {name} is there twice; name each set of its own")
+                seen[numbers] = f"set {name}"
+                found[name] = replace(one, name=name)
     return tuple(found.values())
+
+
+def _taken(rig: PublishedRig, is_normal: bool) -> tuple[TestedRig, ...]:
+    """Published rig as a tested one; none of another law."""
+    if rig.is_normal != is_normal:
+        return ()
+    return (tested_rig(rig, name=rig.section.set) if is_normal else plane_rig(rig),)
+
+
+def _numbers(published: PublishedRig, rig: TestedRig) -> tuple[str, ...]:
+    """Direction and numbers of a rig, by which it is known under any name."""
+    return published.section.path.text, *map(str, rig_digits(rig))
 
 
 def expected_time(sources: Sequence[PublishedSource]) -> str:
     """Number of rigs, shipped and own, and the time that learning from them takes on one core, roughly, as text."""
     rigs = (*published_rigs(), *own_rigs(sources))
+    plane = (*plane_rigs(), *own_plane_rigs(sources))
     seconds = sum(_SECONDS_A_RIG + _SECONDS_A_PAIR * rig.friction_ratio.size**2 for rig in rigs)
-    return f"{len(rigs)} rigs, about {seconds:.0f} s"
+    seconds += sum(_SECONDS_A_POINT * rig.friction_ratio.size for rig in plane)
+    return f"{len(rigs) + len(plane)} rigs, about {seconds:.0f} s"
 
 
 def learn_evidence(
@@ -170,34 +207,30 @@ def learn_evidence(
     Raises
     ------
     InvalidInput
-        If a test is there twice, or no own one has vibration along the normal.
+        If a test is there twice.
     """
     sources = in_order(sources)
-    shipped, own = published_rigs(), own_rigs(sources)
-    if sources and not own:
-        raise InvalidInput(
-            "no test has vibration along the normal, of which alone this is learned; tests within the plane can be"
-            " checked and drawn"
-        )
+    shipped, own, own_plane = published_rigs(), own_rigs(sources), own_plane_rigs(sources)
     rigs = (*shipped, *own)
     population = Population.of(CLOSURES[0], ())
     for done, rig in enumerate(rigs):
         advance(rig.name, done, len(rigs))
-        population = population.with_rig(rig)
+        is_shipped = done < len(shipped)
+        population = population.with_likelihood(published_likelihood(done)) if is_shipped else population.with_rig(rig)
     shares = population.shares()
     rows = systematic_rows(np.log(np.maximum(shares, 1e-300)), _KEPT, np.random.default_rng(0))
+    plane = plane_population().with_rigs(within_plane=own_plane, along_normal=own)
     return LearnedEvidence(
         posterior=EvidencePosterior(
             hyperparameters=population.draws[rows],
-            fingerprint=evidence_fingerprint(own),
-            shipped_fingerprint=evidence_fingerprint(),
+            plane_hyperparameters=plane.posterior().hyperparameters if own or own_plane else None,
+            fingerprint=evidence_fingerprint((*own, *plane_rigs(), *own_plane), laws=(SPRINGS,)),
+            shipped_fingerprint=shipped_fingerprint(),
             sources=learned_sources(shipped_sources(), sources),
         ),
-        scores=_scores(population, shipped, own),
+        scores=(*_scores(population, shipped, own), *_plane_scores(plane, own_plane)),
         effective_draws=effective_number(shares),
-        within_plane=tuple(
-            f"{rig.section.set} of {source.title}" for source in sources for rig in source.rigs if not rig.is_normal
-        ),
+        effective_draws_within_plane=plane.effective_draws,
     )
 
 
@@ -212,9 +245,7 @@ def _scores(
     """Blind scores of the shipped tests, and with own ones of these and of all."""
     before = population.of_first(len(shipped))
     alone = EvidenceScore(
-        name="shipped tests, by the other shipped ones",
-        found=population_calibration("", before, shipped),
-        rival=mean_ratio_calibration(),
+        name="shipped tests, by the other shipped ones", found=blind_calibration(), rival=mean_ratio_calibration()
     )
     if not own:
         return (alone,)
@@ -231,6 +262,33 @@ def _scores(
         name="own tests, by the shipped ones alone",
         found=prediction_of_others(before.posterior(), own),
         rival=rival.of_rigs(lambda rig: rig in names),
+    )
+    return (
+        alone,
+        unseen,
+        *(EvidenceScore(name=name, found=every.of_rigs(some), rival=rival.of_rigs(some)) for name, some in parts),
+    )
+
+
+def _plane_scores(population: PlanePopulation, own: tuple[TestedRig, ...]) -> tuple[EvidenceScore, ...]:
+    """Blind scores of the shipped tests within the plane, and with own ones there of these and of all."""
+    alone = EvidenceScore(
+        name="shipped tests within the plane, by the other shipped ones",
+        found=plane_calibration(),
+        rival=mean_ratio_calibration(rigs=plane_rigs()),
+    )
+    if not own:
+        return (alone,)
+    every, rival = plane_calibration(population), mean_ratio_calibration(rigs=population.rigs)
+    names = {rig.name for rig in own}
+    unseen = EvidenceScore(
+        name="own tests within the plane, by the shipped ones alone",
+        found=prediction_of_others(plane_posterior(), own),
+        rival=rival.of_rigs(lambda rig: rig in names),
+    )
+    parts = (
+        ("shipped tests within the plane, by all others", lambda rig: rig not in names),
+        ("own tests within the plane, by all others", lambda rig: rig in names),
     )
     return (
         alone,

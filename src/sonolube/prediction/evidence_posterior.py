@@ -1,4 +1,8 @@
-"""Posterior that a user has learned from shipped and own published tests, as a file that `predict` takes."""
+"""Posterior that a user has learned from shipped and own published tests, as a file that `predict` takes.
+
+A file has draws along the normal and, where anything of its own was learned from, within the plane. Files of the first
+format have none within the plane, where the shipped posterior holds.
+"""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -14,14 +18,16 @@ from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.prediction.evidence import CLOSURES
 from sonolube.prediction.hierarchy import HYPERPARAMETERS
-from sonolube.prediction.posterior import Posterior, evidence_fingerprint
+from sonolube.prediction.posterior import Posterior, evidence_fingerprint, learned
 from sonolube.prediction.published_source import PublishedSource
+from sonolube.prediction.within_plane import SPRINGS, plane_posterior, plane_rigs
 from sonolube.rig.file.section import Section
 from sonolube.rig.file.toml_file import prefixed, validated
+from sonolube.rig.vibration_direction import VibrationDirection
 from sonolube.storage.files import write_atomically
 from sonolube.text.toml_text import require_plain_content, text_of
 
-_FORMAT: Final = "sonolube evidence posterior 1"
+_FORMAT: Final = "sonolube evidence posterior 2"
 _FEWEST_DRAWS: Final = 100
 _DECIMALS: Final = 4  # of a logarithm
 _LARGEST: Final = 50.0  # size of a logarithm that a draw can have
@@ -34,34 +40,43 @@ class SourceEntry(Section):
     title: str
     citation: str
     opened: str
-    points: int = Field(ge=1)
+    points: int = Field(ge=0)
+    points_within_plane: int = Field(default=0, ge=0)
     shipped: bool
 
 
 class PosteriorFile(Section):
     """Content of the file of a posterior."""
 
-    format: Literal["sonolube evidence posterior 1"]
+    format: Literal["sonolube evidence posterior 1", "sonolube evidence posterior 2"]
     friction_model: str
     fingerprint: str
     shipped_fingerprint: str
     sources: list[SourceEntry] = Field(min_length=1)
     draws: dict[str, list[float]]
+    draws_within_plane: dict[str, list[float]] | None = None
 
     def require_possible(self) -> None:
         """Refuse another friction model, and draws that are none of the model."""
         if self.friction_model != CLOSURES[0].name:
             raise InvalidInput(f'friction_model "{self.friction_model}" is not that of predictions; {_AGAIN}')
-        if set(self.draws) != set(HYPERPARAMETERS):
-            raise InvalidInput(f"draws must be of {', '.join(HYPERPARAMETERS)}, got {', '.join(self.draws)}; {_AGAIN}")
-        sizes = {len(column) for column in self.draws.values()}
-        if len(sizes) > 1 or min(sizes) < _FEWEST_DRAWS:
-            raise InvalidInput(
-                f"draws must be columns of one length, {_FEWEST_DRAWS} or more, got lengths of"
-                f" {', '.join(map(str, sorted(sizes)))}; {_AGAIN}"
-            )
-        if max(abs(value) for column in self.draws.values() for value in column) > _LARGEST:
-            raise InvalidInput(f"draws are logarithms, of which none is larger than {_LARGEST:g}; {_AGAIN}")
+        _require_draws(self.draws, name="draws")
+        if self.draws_within_plane is not None:
+            _require_draws(self.draws_within_plane, name="draws_within_plane")
+
+
+def _require_draws(draws: Mapping[str, Sequence[float]], *, name: str) -> None:
+    """Refuse draws that are none of the model."""
+    if set(draws) != set(HYPERPARAMETERS):
+        raise InvalidInput(f"{name} must be of {', '.join(HYPERPARAMETERS)}, got {', '.join(draws)}; {_AGAIN}")
+    sizes = {len(column) for column in draws.values()}
+    if len(sizes) > 1 or min(sizes) < _FEWEST_DRAWS:
+        raise InvalidInput(
+            f"{name} must be columns of one length, {_FEWEST_DRAWS} or more, got lengths of"
+            f" {', '.join(map(str, sorted(sizes)))}; {_AGAIN}"
+        )
+    if max(abs(value) for column in draws.values() for value in column) > _LARGEST:
+        raise InvalidInput(f"{name} are logarithms, of which none is larger than {_LARGEST:g}; {_AGAIN}")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -72,8 +87,8 @@ class LearnedSource:
     ----------
     title, citation, opened : str
         Citation with doi.
-    points : int
-        With vibration along the normal.
+    points, points_within_plane : int
+        With vibration along the normal and within the plane.
     shipped : bool
         Whether it is of the package.
     """
@@ -83,21 +98,24 @@ class LearnedSource:
     opened: str
     points: int
     shipped: bool
+    points_within_plane: int = 0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EvidencePosterior:
-    """Posterior of vibration along the normal by shipped and own tests.
+    """Posterior by shipped and own tests, along the normal and within the plane.
 
     Parameters
     ----------
     hyperparameters : ndarray, shape (h, 6)
-        Draws, equally probable: logarithms.
+        Draws along the normal, equally probable: logarithms.
     fingerprint : str
         Hash of all tests and of the priors.
     shipped_fingerprint : str
         Hash of the shipped tests and the priors alone, of the version that learned.
     sources : tuple of LearnedSource
+    plane_hyperparameters : ndarray, shape (h, 6), or None
+        Draws within the plane; None where the shipped posterior holds there.
     name : str
         Of its file; empty before it is written.
     """
@@ -106,12 +124,20 @@ class EvidencePosterior:
     fingerprint: str
     shipped_fingerprint: str
     sources: tuple[LearnedSource, ...]
+    plane_hyperparameters: Floats | None = None
     name: str = ""
 
     @cached_property
     def posterior(self) -> Posterior:
-        """Posterior of the friction model that predicts."""
+        """Posterior of the friction model that predicts along the normal."""
         return Posterior(closure=CLOSURES[0], hyperparameters=self.hyperparameters)
+
+    @cached_property
+    def posterior_within_plane(self) -> Posterior:
+        """Posterior of springs on exponential heights, which predict within the plane."""
+        if self.plane_hyperparameters is None:
+            return plane_posterior()
+        return Posterior(closure=SPRINGS, hyperparameters=self.plane_hyperparameters)
 
     @property
     def own(self) -> tuple[LearnedSource, ...]:
@@ -120,34 +146,55 @@ class EvidencePosterior:
 
     @property
     def known_from(self) -> str:
-        """Tests that the population is known from, in words."""
-        if not self.own:
-            return "published tests"
-        count = sum(source.points for source in self.own)
-        points = "point" if count == 1 else "points"
-        return f"published tests and {count} {points} of {', '.join(source.title for source in self.own)}"
+        """Tests along the normal that the population is known from, in words."""
+        return _tests_of(self._own_along_normal)
 
     @property
-    def caveats(self) -> tuple[str, ...]:
-        """What the prediction was learned from, and whether the shipped tests have changed since."""
+    def _own_along_normal(self) -> str:
+        """Own points along the normal, in words; empty without any."""
+        return _points_of([(source.title, source.points) for source in self.own])
+
+    @property
+    def own_within_plane(self) -> str:
+        """Own points within the plane that draws were learned from, in words; empty without any."""
+        if self.plane_hyperparameters is None:
+            return ""
+        return _points_of([(source.title, source.points_within_plane) for source in self.own], "within the plane")
+
+    @property
+    def learned_from(self) -> str:
+        """All tests that it was learned from, in words."""
+        return _tests_of(self._own_along_normal, self.own_within_plane)
+
+    def caveats(self, direction: VibrationDirection) -> tuple[str, ...]:
+        """What a prediction in a direction was learned from, and whether the shipped tests have changed since."""
         place = f" ({self.name})" if self.name else ""
-        learned = f"learned from {self.known_from}{place}, in place of the posterior that ships with sonolube"
-        if self.shipped_fingerprint == evidence_fingerprint():
-            return (learned,)
+        if not direction.is_normal and self.plane_hyperparameters is None:
+            return (
+                f"the evidence{place} tells nothing of vibration within the plane, of which the posterior that ships"
+                " with sonolube holds",
+            )
+        tests = self.known_from
+        if not direction.is_normal:
+            tests = _tests_of(self.own_within_plane, self._own_along_normal)
+        said = f"learned from {tests}{place}, in place of the posterior that ships with sonolube"
+        if self.shipped_fingerprint in (evidence_fingerprint(), shipped_fingerprint()):
+            return (said,)
         changed = "the tests that ship with sonolube are others than those that this posterior was learned from"
-        return learned, f"{changed}: {_AGAIN}"
+        return said, f"{changed}: {_AGAIN}"
 
     def text(self) -> str:
         """Content of its file."""
-        columns = zip(HYPERPARAMETERS, self.hyperparameters.T, strict=True)
         content = {
             "format": _FORMAT,
             "friction_model": CLOSURES[0].name,
             "fingerprint": self.fingerprint,
             "shipped_fingerprint": self.shipped_fingerprint,
             "sources": self.source_objects(),
-            "draws": {name: np.round(column, _DECIMALS).tolist() for name, column in columns},
+            "draws": _columns(self.hyperparameters),
         }
+        if self.plane_hyperparameters is not None:
+            content["draws_within_plane"] = _columns(self.plane_hyperparameters)
         return json.dumps(content).replace("], ", "],\n") + "\n"  # one column a line
 
     def source_objects(self) -> list[dict[str, Any]]:
@@ -168,22 +215,52 @@ class EvidencePosterior:
         return write_atomically(Path(path), self.text())
 
 
+def population_of(direction: VibrationDirection, evidence: EvidencePosterior | None = None) -> Posterior:
+    """Posterior that predicts vibration in a direction: the shipped one, or that by own published tests too."""
+    if evidence is None:
+        return learned().friction if direction.is_normal else plane_posterior()
+    return evidence.posterior if direction.is_normal else evidence.posterior_within_plane
+
+
+def shipped_fingerprint() -> str:
+    """Hash of all shipped tests and of the priors, along the normal and within the plane."""
+    return evidence_fingerprint(plane_rigs(), laws=(SPRINGS,))
+
+
 def learned_sources(shipped: Sequence[PublishedSource], own: Sequence[PublishedSource]) -> tuple[LearnedSource, ...]:
-    """Sources with their points along the normal, of which some may have none."""
-    found = []
-    for source in (*shipped, *own):
-        points = sum(len(rig.points) for rig in source.rigs if rig.is_normal)
-        if points:
-            found.append(
-                LearnedSource(
-                    title=source.title,
-                    citation=source.reference,
-                    opened=source.opened,
-                    points=points,
-                    shipped=source in shipped,
-                )
-            )
-    return tuple(found)
+    """Sources with their points along the normal and within the plane."""
+    return tuple(
+        LearnedSource(
+            title=source.title,
+            citation=source.reference,
+            opened=source.opened,
+            points=normal,
+            points_within_plane=source.points - normal,
+            shipped=source in shipped,
+        )
+        for source in (*shipped, *own)
+        for normal in [sum(len(rig.points) for rig in source.rigs if rig.is_normal)]
+    )
+
+
+def _tests_of(*own: str) -> str:
+    """Published and own tests in words; empty words are left out."""
+    *others, last = "published tests", *(words for words in own if words)
+    return f"{', '.join(others)} and {last}" if others else last
+
+
+def _points_of(counts: Sequence[tuple[str, int]], where: str = "") -> str:
+    """Number of points and the titles of their sources, of which some may have none, in words; empty without any."""
+    total = sum(count for _, count in counts)
+    if not total:
+        return ""
+    points = " ".join(word for word in ("point" if total == 1 else "points", where) if word)
+    return f"{total} {points} of {', '.join(title for title, count in counts if count)}"
+
+
+def _columns(draws: Floats) -> dict[str, list[float]]:
+    """Columns of draws by name, to four decimals of the logarithm."""
+    return {name: np.round(column, _DECIMALS).tolist() for name, column in zip(HYPERPARAMETERS, draws.T, strict=True)}
 
 
 def read_evidence_posterior(path: str | Path) -> EvidencePosterior:
@@ -205,8 +282,10 @@ def read_evidence_posterior(path: str | Path) -> EvidencePosterior:
     """
     with prefixed(str(path)):
         content = validated(PosteriorFile, _json_content(Path(path)))
+        plane = content.draws_within_plane
         return EvidencePosterior(
             hyperparameters=np.column_stack([content.draws[name] for name in HYPERPARAMETERS]),
+            plane_hyperparameters=None if plane is None else np.column_stack([plane[name] for name in HYPERPARAMETERS]),
             fingerprint=content.fingerprint,
             shipped_fingerprint=content.shipped_fingerprint,
             sources=tuple(LearnedSource(**source.model_dump()) for source in content.sources),

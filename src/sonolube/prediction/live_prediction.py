@@ -14,7 +14,7 @@ from sonolube.models.dynamics import Structure
 from sonolube.prediction.applicability import Applicability, applicability, contact_heating, spot_heating
 from sonolube.prediction.bodies import pair_of
 from sonolube.prediction.evidence import Conditions
-from sonolube.prediction.evidence_posterior import EvidencePosterior, read_evidence_posterior
+from sonolube.prediction.evidence_posterior import EvidencePosterior, population_of, read_evidence_posterior
 from sonolube.prediction.further_measurements import (
     KNOWN_WELL,
     Measure,
@@ -32,10 +32,10 @@ from sonolube.prediction.posterior import Posterior, learned
 from sonolube.prediction.predictive import DRAWS, Laboratory, RigPrediction, laboratory, rig_prediction
 from sonolube.prediction.rig_statement import heat_words, prediction_attributes, statement, wear_sentence
 from sonolube.prediction.wear import vibration_weight
-from sonolube.prediction.within_plane import NO_HEAT, plane_posterior
+from sonolube.prediction.within_plane import NO_HEAT
 from sonolube.rig import Rig
 from sonolube.rig.datasets import LabelledArray, LabelledArrays, labels
-from sonolube.rig.vibration_direction import VibrationDirection
+from sonolube.rig.vibration_direction import NORMAL, VibrationDirection
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -61,8 +61,7 @@ class LivePrediction:
     laboratory_runs : sequence of (Rig, xarray.Dataset)
         Other rigs of the same laboratory with runs of each, which tell of the decay length and its scatter.
     evidence : EvidencePosterior, str or Path, optional
-        Posterior that was learned with own published tests, or its file, in place of the shipped one: of vibration
-        along the normal.
+        Posterior that was learned with own published tests, or its file, in place of the shipped one.
     pin, disc : str, optional
         Materials of the catalogue, for the temperature rise of the contact; by default those of the rig.
     lubricant : bool
@@ -106,7 +105,7 @@ class LivePrediction:
         self._draws, self._seed = draws, seed
         self._kept: tuple[tuple[VibrationDirection, bytes], RigPrediction] | None = None
         self._evidence = read_evidence_posterior(evidence) if isinstance(evidence, str | Path) else evidence
-        self._population = learned().friction if self._evidence is None else self._evidence.posterior
+        self._population = population_of(NORMAL, self._evidence)
         self._laboratory = _laboratory(self._population, laboratory_runs, seed=seed) if laboratory_runs else None
         self._posterior = self._population if self._laboratory is None else self._laboratory.posterior
         self.first: LabelledArrays = self.at(rig)
@@ -131,18 +130,13 @@ class LivePrediction:
         MissingProperty, UnknownName
             For a material without thermal properties.
         """
-        limits = applicability(rig, lubricant=self._lubricant)
+        limits = applicability(rig, lubricant=self._lubricant, evidence=self._evidence)
         if limits.refusal:
             raise InvalidInput(limits.refusal)
         inputs = rig_inputs(rig, takes_plane=True)
         if self._laboratory is not None and not inputs.direction.is_normal:
             raise InvalidInput(
                 f"{rig.title}: other rigs tell of the decay length alone, without effect here; leave them out"
-            )
-        if self._evidence is not None and not inputs.direction.is_normal:
-            raise InvalidInput(
-                f"{rig.title}: evidence {self._evidence.name} was learned along the normal, and this rig vibrates"
-                " within the plane; leave evidence out"
             )
         known_from = _known_from(self._evidence, self._laboratory)
         if known_from and not inputs.measured_length:
@@ -228,7 +222,8 @@ class LivePrediction:
             parts += [tested.friction_ratio, tested.uncertainty]
         key = inputs.direction, np.concatenate(parts).tobytes()
         if self._kept is None or self._kept[0] != key:
-            posterior = self._posterior if inputs.direction.is_normal else plane_posterior()
+            is_normal = inputs.direction.is_normal
+            posterior = self._posterior if is_normal else population_of(inputs.direction, self._evidence)
             found = rig_prediction(posterior, at, count=self._draws, seed=self._seed, own=tested)
             self._kept = key, found
         return self._kept[1]

@@ -122,9 +122,10 @@ def write_learned(path: Path, *, friction: Mapping[str, Floats], wear: Floats) -
     write_atomically(path, json.dumps(content).replace("], ", "],\n") + "\n")  # one column a line
 
 
-def evidence_fingerprint(further: Sequence[TestedRig] = ()) -> str:
-    """Hash of the shipped tests, further ones and the priors, by which stale data are recognised."""
-    numbers: list[Any] = [[closure.name, *np.round(np.ravel(POPULATION_PRIOR.of(closure)), 6)] for closure in CLOSURES]
+def evidence_fingerprint(further: Sequence[TestedRig] = (), *, laws: Sequence[Closure] = ()) -> str:
+    """Hash of the shipped tests, further ones and the priors of all laws, by which stale data are recognised."""
+    known = (*CLOSURES, *laws)
+    numbers: list[Any] = [[closure.name, *np.round(np.ravel(POPULATION_PRIOR.of(closure)), 6)] for closure in known]
     numbers += [[rig.name, *rig_digits(rig)] for rig in (*published_rigs(), *further)]
     numbers += [[pair.name, *np.round(pair.wear_rate_ratio, 6), pair.uncertainty] for pair in published_wear()]
     return sha256(repr([list(map(str, row)) for row in numbers]).encode()).hexdigest()[:16]
@@ -159,7 +160,10 @@ class Population:
 
     def with_rig(self, rig: TestedRig) -> "Population":
         """Population with the likelihood of a further rig, the last."""
-        logs = RigLikelihood(self.closure, rig)(self.draws)
+        return self.with_likelihood(RigLikelihood(self.closure, rig)(self.draws))
+
+    def with_likelihood(self, logs: Floats) -> "Population":
+        """Population with the likelihood of a further rig, the last, where that is known."""
         return replace(self, log_likelihoods=np.column_stack([self.log_likelihoods, logs]))
 
     def of_first(self, count: int) -> "Population":
@@ -181,7 +185,16 @@ class Population:
 @cache
 def published_population() -> Population:
     """Population of the published rigs under the friction model that predicts."""
-    return Population.of(CLOSURES[0], published_rigs())
+    population = Population.of(CLOSURES[0], ())
+    for place in range(len(published_rigs())):
+        population = population.with_likelihood(published_likelihood(place))
+    return population
+
+
+@cache
+def published_likelihood(place: int) -> Floats:
+    """Logarithm of the likelihood of a published rig by each draw from the prior of the model that predicts."""
+    return RigLikelihood(CLOSURES[0], published_rigs()[place])(Population.of(CLOSURES[0], ()).draws)
 
 
 def _columns(names: Sequence[str], draws: Floats) -> dict[str, list[float]]:

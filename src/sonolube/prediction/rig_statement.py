@@ -102,7 +102,7 @@ def prediction_attributes(
     own_caveats = [each for each in point.caveats if not said_above or each not in direction_caveats(resolved_rig(rig))]
     caveats = [*limits.caveats, *own_caveats, *extrapolation_caveats(rig, inputs)]
     caveats += () if laboratory is None else laboratory.caveats
-    caveats += () if evidence is None else evidence.caveats
+    caveats += () if evidence is None else evidence.caveats(rig.direction)
     if own is not None:
         caveats += [*_outlier_caveats(found.check, own), *own.caveats]
         if own.wear_rate_ratio.size and not rig.direction.is_normal:

@@ -25,7 +25,8 @@ where 0.30 was measured, and by Coulomb's law the phase between both decides: in
 fifth of the amplitude along the normal moves the ratio from 0.06 to anything between -0.13 and 0.25.
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from math import asin, hypot, pi, sin, sqrt
 from typing import Final
@@ -52,7 +53,13 @@ from sonolube.prediction.evidence import (
     TestedRig,
     UncertainConditions,
 )
-from sonolube.prediction.hierarchy import OWN_DEVIATES, POPULATION_PRIOR, standard_normals
+from sonolube.prediction.hierarchy import (
+    HYPERPARAMETERS,
+    OWN_DEVIATES,
+    POPULATION_PRIOR,
+    RigLikelihood,
+    standard_normals,
+)
 from sonolube.prediction.posterior import Posterior, RigDraws, learned, systematic_rows
 from sonolube.prediction.published_source import PublishedRig, shipped_sources
 from sonolube.rig.amplitude_source import AMPLITUDE_ERROR
@@ -251,10 +258,10 @@ SPRINGS: Final = Closure(
 @cache
 def plane_rigs() -> tuple[TestedRig, ...]:
     """Published points within the plane by rig, with the uncertainty of those without scatter where none is printed."""
-    return tuple(_rig(rig) for source in shipped_sources() for rig in source.rigs if not rig.is_normal)
+    return tuple(plane_rig(rig) for source in shipped_sources() for rig in source.rigs if not rig.is_normal)
 
 
-def _rig(published: PublishedRig) -> TestedRig:
+def plane_rig(published: PublishedRig) -> TestedRig:
     """Published points within the plane on one rig; of a stated velocity the amplitude alone has an error."""
     points, section = published.points, published.section
     frequency = np.array([point.frequency or UNSTATED_FREQUENCY for point in points])
@@ -296,6 +303,66 @@ def _plane(at: Conditions) -> PlaneConditions:
     return at
 
 
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class PlanePopulation:
+    """Draws from the prior within the plane with their likelihoods, by which rigs are left out at no cost.
+
+    Parameters
+    ----------
+    rigs : tuple of TestedRig
+        Within the plane.
+    draws : ndarray, shape (h, 6)
+        Prior of the slip length; the discrepancy as it was learned along the normal from the shipped tests.
+    log_weights : ndarray, shape (h,)
+        Of each draw by further tests along the normal; 0 without them.
+    log_likelihoods : ndarray, shape (h, r)
+        Of each draw and each rig within the plane.
+    """
+
+    rigs: tuple[TestedRig, ...]
+    draws: Floats
+    log_weights: Floats
+    log_likelihoods: Floats
+
+    def with_rigs(self, *, within_plane: Sequence[TestedRig], along_normal: Sequence[TestedRig]) -> "PlanePopulation":
+        """Population with the likelihoods of further rigs, those along the normal by the friction model of these."""
+        known = learned().friction
+        logs = sum((RigLikelihood(known.closure, rig)(known.hyperparameters) for rig in along_normal), np.zeros(1))
+        weights = self.log_weights + np.resize(logs, self.log_weights.size)  # as the draws repeat those learned from
+        columns = [_log_likelihood(self.draws, rig) for rig in within_plane]
+        return replace(
+            self,
+            rigs=(*self.rigs, *within_plane),
+            log_weights=weights,
+            log_likelihoods=np.column_stack([self.log_likelihoods, *columns]),
+        )
+
+    def posterior(self, *, without: tuple[int, ...] = ()) -> Posterior:
+        """Posterior by all rigs but some."""
+        rows = systematic_rows(self._logs(without), _DRAWS, np.random.default_rng(0))
+        return Posterior(closure=SPRINGS, hyperparameters=self.draws[rows])
+
+    @property
+    def effective_draws(self) -> float:
+        """Effective number of the weighed draws. []"""
+        logs = self._logs(())
+        return float(np.exp(2 * np.logaddexp.reduce(logs) - np.logaddexp.reduce(2 * logs)))
+
+    def _logs(self, without: tuple[int, ...]) -> Floats:
+        """Logarithm of the weight of each draw by all rigs but some."""
+        return np.asarray(self.log_weights + np.delete(self.log_likelihoods, without, axis=1).sum(axis=1))
+
+
+@cache
+def plane_population() -> PlanePopulation:
+    """Population of the published rigs within the plane."""
+    drawn = _prior_draws()
+    none = PlanePopulation(
+        rigs=(), draws=drawn, log_weights=np.zeros(len(drawn)), log_likelihoods=np.zeros((len(drawn), 0))
+    )
+    return none.with_rigs(within_plane=plane_rigs(), along_normal=())
+
+
 @cache
 def plane_posterior(*, without: tuple[int, ...] = ()) -> Posterior:
     """Posterior within the plane: the prior of the slip length, and the discrepancy learned along the normal.
@@ -307,30 +374,20 @@ def plane_posterior(*, without: tuple[int, ...] = ()) -> Posterior:
     without : tuple of int
         Places of published rigs that are left out.
     """
-    drawn = _prior_draws()
-    logs = np.zeros(len(drawn))
-    for place in range(len(plane_rigs())):
-        if place not in without:
-            logs += _log_likelihood(place)
-    rows = systematic_rows(logs, _DRAWS, np.random.default_rng(0))
-    return Posterior(closure=SPRINGS, hyperparameters=drawn[rows])
+    return plane_population().posterior(without=without)
 
 
-@cache
 def _prior_draws() -> Floats:
     """Hyperparameters before the published points within the plane, shape (draws, 6)."""
-    known = learned().friction.hyperparameters
-    drawn = known[np.arange(_DRAWS) % len(known)].copy()
+    drawn = np.resize(learned().friction.hyperparameters, (_DRAWS, len(HYPERPARAMETERS)))
     means, deviations = POPULATION_PRIOR.of(SPRINGS)
     slip = standard_normals(_DRAWS, columns=2, seed=7)
     drawn[:, [0, 2]] = means[[0, 2]] + deviations[[0, 2]] * slip
     return drawn
 
 
-@cache
-def _log_likelihood(place: int) -> Floats:
-    """Logarithm of the likelihood of a published rig by each draw from the prior, over what the rig has of its own."""
-    hyperparameters, rig = _prior_draws(), plane_rigs()[place]
+def _log_likelihood(hyperparameters: Floats, rig: TestedRig) -> Floats:
+    """Logarithm of the likelihood of a rig by each draw from the prior, over what the rig has of its own."""
     rows = np.repeat(np.arange(len(hyperparameters)), _NODES)
     deviates = np.tile(standard_normals(_NODES, columns=OWN_DEVIATES, seed=1), (len(hyperparameters), 1))
     posterior = Posterior(closure=SPRINGS, hyperparameters=hyperparameters)
@@ -346,22 +403,26 @@ def tested_words(direction: VibrationDirection) -> str:
     return f"Vibration {direction.text}, by theory alone ({law}, compared with no experiment)"
 
 
-def plane_caveats(direction: VibrationDirection) -> tuple[str, ...]:
-    """How far a prediction within the plane was tested, what is known of the slip length, and what the law misses."""
+def plane_caveats(direction: VibrationDirection, posterior: Posterior, *, own: str = "") -> tuple[str, ...]:
+    """How far a prediction within the plane was tested, what is known of the slip length, and what the law misses.
+
+    `own` names own tests within the plane from which the posterior was learned too; empty without them.
+    """
     low, high = tested_velocity_ratios()
     points, sources = tested_points()
     tested = (
-        f"{points} published points of {sources} sources along the sliding, {', '.join(_compared())}, at v_r/(omega a)"
-        f" of {low:.2g} to {high:.2g}"
+        f"{points} published points of {sources} sources along the sliding, {', '.join(_compared(posterior))}, at"
+        f" v_r/(omega a) of {low:.2g} to {high:.2g}"
     )
     law = "springs on exponential heights, which have more friction than Coulomb's law of rigid contacts,"
     first = f"vibration {direction.text}: {law} tested with {tested}, and with no others"
     if not _is_along(direction):
         first = f"vibration {direction.text}: theory alone, {law} compared with no experiment; known are {tested}"
-    middle, spread = _slip_length()
+    middle, spread = slip_length(posterior)
+    known = f", of these points and of {own}" if own else " and of these points"
     slip = (
         f"the slip length of the contact, {format_si(middle, 'm')} within a factor of {np.exp(spread):.1f}, is that of"
-        " Mindlin's stiffness and of these points; one run of your own tells it better than either"
+        f" Mindlin's stiffness{known}; one run of your own tells it better than {'all' if own else 'either'}"
     )
     if not _is_along(direction):
         slip += "; for an untested direction the interval is wider, by an assumption"
@@ -375,15 +436,15 @@ def tested_points() -> tuple[int, int]:
     return sum(rig.friction_ratio.size for rig in plane_rigs()), len(plane_rigs())
 
 
-def _slip_length() -> tuple[float, float]:
+def slip_length(posterior: Posterior) -> tuple[float, float]:
     """Median of the slip length of a further rig, in m, and the deviation of its logarithm."""
-    mu, tau = plane_posterior().hyperparameters[:, [0, 2]].T
+    mu, tau = posterior.hyperparameters[:, [0, 2]].T
     return float(np.exp(np.median(mu))), float(np.sqrt(np.var(mu) + np.mean(np.exp(2 * tau))))
 
 
-def _compared() -> list[str]:
+def _compared(posterior: Posterior) -> list[str]:
     """Each published rig with its measured ratios and those of the law at the median slip length."""
-    log_length = np.log(_slip_length()[0])
+    log_length = np.log(slip_length(posterior)[0])
     return [
         f"{rig.name} ({_range(rig.friction_ratio)} where the law has {_range(ratio)})"
         for rig in plane_rigs()

@@ -15,6 +15,7 @@ from sonolube.design.optimisation.screening import DesignProblem
 from sonolube.design.parameter_sweep import ProgressCallback
 from sonolube.errors import OutsideRange, SonolubeError
 from sonolube.prediction.chances import ReductionChances, odds_text, reduction_chances
+from sonolube.prediction.evidence_posterior import EvidencePosterior
 from sonolube.rig import Rig, friction_point, point_batch
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.text.units import format_si
@@ -51,6 +52,8 @@ class ReachedChance:
         Friction ratio of the design: median, and ends of the 80 % interval.
     wanted : float or None
         Chance that was asked for.
+    caveats : tuple of str
+        Own published tests that it was learned from too.
     """
 
     friction_reduction: float
@@ -59,6 +62,7 @@ class ReachedChance:
     median: float
     high: float
     wanted: float | None = None
+    caveats: tuple[str, ...] = ()
 
     @property
     def text(self) -> str:
@@ -81,13 +85,21 @@ def reached_chance(
     low, median, high = chances.interval(**at)
     chance = float(chances.of(friction_reduction, **at))
     return ReachedChance(
-        friction_reduction=friction_reduction, chance=chance, low=low, median=median, high=high, wanted=wanted
+        friction_reduction=friction_reduction,
+        chance=chance,
+        low=low,
+        median=median,
+        high=high,
+        wanted=wanted,
+        caveats=chances.caveats,
     )
 
 
-def computed_chances(rig: Rig, *, runs: "xr.Dataset | None" = None) -> ReductionChances:
+def computed_chances(
+    rig: Rig, *, runs: "xr.Dataset | None" = None, evidence: EvidencePosterior | None = None
+) -> ReductionChances:
     """Chances of a rig whose amplitude is that of its structure, as that of all designs is."""
-    return reduction_chances(replace(driven_rig(rig), amplitude_source="computed"), runs=runs)
+    return reduction_chances(replace(driven_rig(rig), amplitude_source="computed"), runs=runs, evidence=evidence)
 
 
 def optimum_with_chance(
@@ -96,6 +108,7 @@ def optimum_with_chance(
     *,
     confidence: float | None,
     runs: "xr.Dataset | None" = None,
+    evidence: EvidencePosterior | None = None,
     **searched: Unpack["Searched"],
 ) -> tuple[Optimum, ReachedChance | None]:
     """Best designs for the friction ratio of a problem, and the chance that the best of them reaches it.
@@ -110,6 +123,8 @@ def optimum_with_chance(
         None.
     runs : xarray.Dataset, optional
         Own measured runs, as `predict` takes them.
+    evidence : EvidencePosterior, optional
+        Posterior by own published tests too, in place of the shipped one.
     searched : Searched
         Arguments of `optimise`.
 
@@ -122,15 +137,15 @@ def optimum_with_chance(
     Raises
     ------
     InvalidInput
-        If a confidence is wanted, or runs are given, and nothing can be predicted of the rig.
+        If a confidence is wanted, or runs or evidence are given, and nothing can be predicted of the rig.
     OutsideRange
         If no design reaches the ratio, or none with the chance.
     """
     reduction = 1 - problem.friction_ratio
     try:
-        chances = computed_chances(rig, runs=runs)
+        chances = computed_chances(rig, runs=runs, evidence=evidence)
     except SonolubeError:
-        if confidence is not None or runs is not None:
+        if not (confidence is None and runs is None and evidence is None):
             raise
         return optimise(problem, **searched), None
     if confidence is not None:

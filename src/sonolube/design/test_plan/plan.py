@@ -26,9 +26,10 @@ from sonolube.design.test_plan.comparison import (
 from sonolube.design.test_plan.information import Batch, best_batch, closure_outcomes, mutual_information
 from sonolube.errors import InvalidInput
 from sonolube.facts.published import column_numbers
+from sonolube.prediction.evidence_posterior import EvidencePosterior, population_of
 from sonolube.prediction.hierarchy import central_interval
 from sonolube.prediction.inputs import RigInputs, own_runs, rig_inputs
-from sonolube.prediction.posterior import learned
+from sonolube.prediction.posterior import Posterior, learned
 from sonolube.prediction.predictive import rig_prediction
 from sonolube.rig import Rig
 from sonolube.text.units import format_si
@@ -207,11 +208,13 @@ def plan_tests(
     points: int = 4,
     limits: RigLimits = NO_LIMITS,
     runs: "xr.Dataset | None" = None,
+    evidence: EvidencePosterior | None = None,
     pin: str | None = None,
     disc: str | None = None,
     seed: int = 0,
 ) -> TestPlan:
     """Plan the next tests of a rig."""
+    population = population_of(rig.direction, evidence)
     inputs = rig_inputs(rig)
     own = None if runs is None else own_runs(runs, inputs, title=rig.title)
     if own is not None and own.friction is not None:
@@ -225,13 +228,13 @@ def plan_tests(
     candidates = candidate_tests(rig, inputs, factors, limits=limits, pin=pin, disc=disc)
     at = inputs.at(vibration_amplitude=candidates.vibration_amplitude, sliding_speed=candidates.sliding_speed)
     tested = None if own is None else own.tested
-    found = rig_prediction(learned().friction, at, count=_DRAWS, seed=seed, own=tested)
+    found = rig_prediction(population, at, count=_DRAWS, seed=seed, own=tested)
     ratios = found.ratios(at.conditions)
     chance = np.mean(1 - ratios >= question.difference, axis=0)
     allowed = _allowed(candidates, points)
     _require_effect(1 - np.median(ratios, axis=0)[allowed], question.difference)
     noise = np.full(at.conditions.sliding_speed.shape, deviation / np.sqrt(replicates))
-    models = closure_outcomes(learned().compared, at, own=tested, seed=seed)
+    models = closure_outcomes(_compared(population), at, own=tested, seed=seed)
     first = [candidates.own] if candidates.own in allowed else []
     batch = best_batch(models, count=points, noise=noise, allowed=allowed, first=first, seed=seed)
     singles = [mutual_information(models, np.array([each]), noise=noise, seed=seed) for each in range(noise.size)]
@@ -262,7 +265,24 @@ def plan_tests(
         caveats=(
             *_caveats(plan, inputs, contradicted=found.check is not None and found.check.contradicted),
             *plan.caveats,
+            *_evidence_caveats(rig, evidence),
         ),
+    )
+
+
+def _compared(population: Posterior) -> tuple[Posterior, ...]:
+    """Friction models that the tests are to tell apart, that which predicts by its population."""
+    name = population.closure.name
+    return tuple(population if each.closure.name == name else each for each in learned().compared)
+
+
+def _evidence_caveats(rig: Rig, evidence: EvidencePosterior | None) -> tuple[str, ...]:
+    """Own published tests that the prediction was learned from too, and the models that were not."""
+    if evidence is None:
+        return ()
+    return (
+        *evidence.caveats(rig.direction),
+        "the friction models beside the one that predicts are learned from the tests that ship with sonolube alone",
     )
 
 

@@ -22,6 +22,7 @@ from sonolube.laboratory.virtual_tribometer import Disturbances
 from sonolube.laboratory.virtual_tribometer.pace import ExpectedTime, expected_time
 from sonolube.laboratory.virtual_tribometer.simulation import VirtualRig
 from sonolube.laboratory.virtual_tribometer.streams import Source, Stream
+from sonolube.prediction.evidence_posterior import EvidencePosterior
 from sonolube.rig import Rig
 from sonolube.text.units import format_si
 
@@ -37,6 +38,7 @@ def rehearsal(
     seed: int,
     faults: Sequence[str] = (),
     disturbances: Disturbances | None = None,
+    evidence: EvidencePosterior | None = None,
 ) -> "Rehearsal":
     """Devices of a device map on a virtual rig.
 
@@ -54,6 +56,8 @@ def rehearsal(
         Names of `FAULTS`, each with the time from which on it acts, such as overload_trip@2s.
     disturbances : Disturbances, optional
         Of tests with the rig; the usual ones by default.
+    evidence : EvidencePosterior, optional
+        Posterior that friction is drawn from, in place of the shipped one.
 
     Returns
     -------
@@ -67,7 +71,7 @@ def rehearsal(
     active = ActiveFaults(faults_named(faults))
     heating = HeatingAssumptions()
     diameter = protocol.metadata.groove_diameter or device_map.entries.motor.groove_diameter
-    virtual = VirtualRig(rig, seed, disturbances or Disturbances(), heating, diameter, False)
+    virtual = VirtualRig(rig, seed, disturbances or Disturbances(), heating, diameter, False, evidence=evidence)
     known, told = device_map.devices(), list[SimulatedChannel]()
     inputs: dict[str, _Inputs] = {}
     entries = {"": device_map.entries.acquisition, **device_map.entries.acquisitions}

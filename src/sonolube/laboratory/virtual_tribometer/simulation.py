@@ -29,6 +29,7 @@ from sonolube.laboratory.virtual_tribometer.signals import (
 from sonolube.laboratory.virtual_tribometer.streams import OutputDistortion, Source, Stream
 from sonolube.laboratory.virtual_tribometer.truth import FrictionDraw, Temperatures, TruthSetting, truth_dataset
 from sonolube.models.dynamics.structure import electrical_admittance
+from sonolube.prediction.evidence_posterior import EvidencePosterior
 from sonolube.rig import Rig
 from sonolube.rig.driven_rig import actuator_capacitance
 
@@ -72,6 +73,8 @@ class VirtualRig:
     groove_diameter : float
         Of the circle under the pin. [m]
     real_time : bool
+    evidence : EvidencePosterior, optional
+        Posterior that friction is drawn from, in place of the shipped one.
     """
 
     def __init__(
@@ -82,10 +85,12 @@ class VirtualRig:
         heating: HeatingAssumptions,
         groove_diameter: float,
         real_time: bool,
+        *,
+        evidence: EvidencePosterior | None = None,
     ) -> None:
         streams = np.random.SeedSequence(seed).spawn(_STREAMS)
         disturbances = disturbances.drawn(np.random.default_rng(streams[_SIZES]))
-        friction = FrictionDraw(rig, seed=seed)
+        friction = FrictionDraw(rig, seed=seed, evidence=evidence)
         self._rig, self._friction, self._sizes = rig, friction, disturbances
         self._diameter, self._real_time = groove_diameter, real_time
         self._streams = streams

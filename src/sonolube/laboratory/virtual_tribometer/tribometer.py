@@ -10,6 +10,7 @@ from sonolube.laboratory.heating_assumptions import HeatingAssumptions
 from sonolube.laboratory.virtual_tribometer.disturbances import Disturbances
 from sonolube.laboratory.virtual_tribometer.pace import ExpectedTime, expected_time
 from sonolube.laboratory.virtual_tribometer.simulation import CHANNELS, VOLTAGE_MAXIMUM, VirtualRig
+from sonolube.prediction.evidence_posterior import EvidencePosterior
 from sonolube.rig import Rig
 from sonolube.text.units import format_si
 
@@ -31,6 +32,7 @@ def virtual_tribometer(
     disturbances: Disturbances | None = None,
     groove_diameter: float = GROOVE_DIAMETER,
     heating: HeatingAssumptions | None = None,
+    evidence: EvidencePosterior | None = None,
 ) -> "VirtualTribometer":
     """Virtual tribometer of a rig.
 
@@ -48,6 +50,8 @@ def virtual_tribometer(
         Of the circle under the pin. [m]
     heating : HeatingAssumptions, optional
         Thermal properties that a rig file does not hold; as in a dry run by default.
+    evidence : EvidencePosterior, optional
+        Posterior that friction is drawn from, in place of the shipped one.
 
     Returns
     -------
@@ -59,7 +63,7 @@ def virtual_tribometer(
         If the rig does not slide, does not vibrate or has no drive.
     """
     sizes, assumed = disturbances or Disturbances(), heating or HeatingAssumptions()
-    virtual = VirtualRig(rig, seed, sizes, assumed, groove_diameter, real_time)
+    virtual = VirtualRig(rig, seed, sizes, assumed, groove_diameter, real_time, evidence=evidence)
     described = {"device": "virtual tribometer", "rig": rig.title, "seed": str(seed)}
     return VirtualTribometer(virtual, described, groove_diameter)
 

@@ -17,7 +17,7 @@ from sonolube.laboratory.virtual_tribometer.disturbances import DISTURBANCE_UNIT
 from sonolube.laboratory.virtual_tribometer.signals import Approach, Bursts, Lagged, StickSlip
 from sonolube.models.thermal import EllipticSource, ThermalSolid, contact_rise
 from sonolube.models.wear import cube_wear_rate
-from sonolube.prediction import learned
+from sonolube.prediction.evidence_posterior import EvidencePosterior, population_of
 from sonolube.prediction.inputs import rig_inputs
 from sonolube.prediction.predictive import ratio_draws
 from sonolube.rig import Rig, simulate, steady_vibration, thermal_solid
@@ -61,6 +61,8 @@ class FrictionDraw:
     rig : Rig
         With a drive.
     seed : int
+    evidence : EvidencePosterior, optional
+        Posterior by own published tests too, in place of the shipped one.
 
     Raises
     ------
@@ -75,9 +77,10 @@ class FrictionDraw:
     voltages: levels are computed until two voltages are within 2 % of the rig's own, and interpolated between these.
     """
 
-    def __init__(self, rig: Rig, *, seed: int) -> None:
+    def __init__(self, rig: Rig, *, seed: int, evidence: EvidencePosterior | None = None) -> None:
         self._inputs = rig_inputs(rig)
         self._rig, self._seed = rig, seed
+        self._population = population_of(rig.direction, evidence)
         rng = np.random.default_rng(seed)
         friction = self._inputs.friction
         self.friction_coefficient = float(friction.value * np.exp(friction.spread * rng.standard_normal()))
@@ -148,7 +151,7 @@ class FrictionDraw:
         amplitude, worn = found.friction.vibration_amplitude, found.wear.wear_rate
         inputs = replace(self._inputs, frequency=setting.frequency)  # the others are those of the rig at any drive
         at = inputs.at(vibration_amplitude=amplitude, sliding_speed=sliding_speed)
-        draws = ratio_draws(learned().friction, at, count=_DRAWS, seed=self._seed)
+        draws = ratio_draws(self._population, at, count=_DRAWS, seed=self._seed)
         ratio = max(float(draws[self._row, 0]), _MIN_RATIO)
         return FrictionLevel(
             friction_force=ratio * without,

@@ -9,6 +9,7 @@ from sonolube.prediction.evidence_learning import EvidenceScore, LearnedEvidence
 from sonolube.prediction.hierarchy import PROBABILITIES
 from sonolube.prediction.published_source import PublishedRig, PublishedSource
 from sonolube.prediction.source_file import PublishedPoint
+from sonolube.prediction.within_plane import slip_length
 from sonolube.report.blocks import Block, Rows, Table
 from sonolube.text.units import format_si
 from sonolube.vocabulary import quantities, si
@@ -155,27 +156,38 @@ def learned_object(learned: LearnedEvidence) -> dict[str, Any]:
     """What was learned, without the draws."""
     posterior = learned.posterior
     length, spread = posterior.posterior.decay_length()
+    slip, slip_spread = slip_length(posterior.posterior_within_plane)
     return {
         "fingerprint": posterior.fingerprint,
         "sources": posterior.source_objects(),
         "blind_scores": {score.name: score_object(score) for score in learned.scores},
         "effective_draws": learned.effective_draws,
-        **si({"decay_length": length}),
+        "effective_draws_within_plane": learned.effective_draws_within_plane,
+        **si({"decay_length": length, "slip_length": slip}),
         "decay_length_spread": spread,
+        "slip_length_spread": slip_spread,
     }
 
 
 def learned_blocks(learned: LearnedEvidence) -> list[Block]:
-    """What was learned from, blind scores, and the population of decay lengths."""
-    length, spread = learned.posterior.posterior.decay_length()
-    within = f"within a factor of {np.exp(spread):.2g}"
+    """What was learned from, blind scores, and the populations of decay lengths and of slip lengths."""
+    posterior = learned.posterior
+    decay = _length_text(*posterior.posterior.decay_length())
+    slip = _length_text(*slip_length(posterior.posterior_within_plane))
     return [
-        f"Learned from {learned.posterior.known_from}",
+        f"Learned from {posterior.learned_from}",
         Table(SCORE_HEADS, [score_row(score) for score in learned.scores]),
-        f"  decay length of worn contacts on a further rig: {format_si(length, 'm', digits=2)} {within}",
-        f"  effective draws: {learned.effective_draws:.0f}",
-        *(f"  source: {source.citation}" for source in learned.posterior.sources),
+        f"  decay length of worn contacts on a further rig, along the normal: {decay}",
+        f"  slip length of contacts on a further rig, within the plane: {slip}",
+        f"  effective draws: {learned.effective_draws:.0f} along the normal,"
+        f" {learned.effective_draws_within_plane:.0f} within the plane",
+        *(f"  source: {source.citation}" for source in posterior.sources),
     ]
+
+
+def _length_text(middle: float, spread: float) -> str:
+    """Median of a length and the factor within which it lies."""
+    return f"{format_si(middle, 'm', digits=2)} within a factor of {np.exp(spread):.2g}"
 
 
 def points_dataset(sources: Sequence[PublishedSource]) -> "xr.Dataset":

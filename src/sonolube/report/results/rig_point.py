@@ -15,6 +15,7 @@ from sonolube.vocabulary import si
 if TYPE_CHECKING:
     from sonolube.models.friction import FrictionModel
     from sonolube.prediction.applicability import FrictionInterval
+    from sonolube.prediction.evidence_posterior import EvidencePosterior
     from sonolube.prediction.verdict import PointVerdict
     from sonolube.rig import ResolvedRig
     from sonolube.validation.assessment import ErrorStatistics
@@ -56,6 +57,10 @@ class BeyondTheModel:
             )
         return [("left out", error)]
 
+    def caveats(self) -> tuple[str, ...]:
+        """Own published tests that the interval was learned from too."""
+        return () if self.interval is None else self.interval.caveats
+
     def object(self) -> dict[str, Any]:
         """Entries for JSON."""
         if self.interval is None:
@@ -71,7 +76,9 @@ class BeyondTheModel:
         }
 
 
-def beyond_the_model(rig: "Rig | ResolvedRig", model: "FrictionModel", *, interval: bool) -> BeyondTheModel:
+def beyond_the_model(
+    rig: "Rig | ResolvedRig", model: "FrictionModel", *, interval: bool, evidence: "EvidencePosterior | None" = None
+) -> BeyondTheModel:
     """Model error and prediction interval that the friction ratio of a rig by a friction model leaves out."""
     if not interval:
         return BeyondTheModel(error=None, interval=None)
@@ -80,7 +87,9 @@ def beyond_the_model(rig: "Rig | ResolvedRig", model: "FrictionModel", *, interv
     from sonolube.validation.assessment import unseen_error  # which fits, with scipy.optimize
 
     is_tested = resolved_rig(rig).rig.direction.is_normal  # as all tests behind that error
-    return BeyondTheModel(error=unseen_error(model) if is_tested else None, interval=friction_interval(rig))
+    return BeyondTheModel(
+        error=unseen_error(model) if is_tested else None, interval=friction_interval(rig, evidence=evidence)
+    )
 
 
 def own_point_lines(rig: Rig) -> list[str]:

@@ -22,10 +22,11 @@ from sonolube.report.results.rig_point import own_point_lines, own_point_object
 from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, commanded_quantity, operating_caveats
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 from sonolube.tasks.design.chances import CONFIDENCE, TARGET_REDUCTION, target_chance
+from sonolube.tasks.own_evidence import Evidence, evidence_of
 from sonolube.tasks.own_tables import MappedRuns, Values, refuse_replaced, runs_of, values_by_key
 from sonolube.tasks.parameters import File, KeyValues, Number, Parameter, RigFile, RunsSource, Watched, rig_of
 from sonolube.tasks.progress import stage
-from sonolube.tasks.task import shown, task
+from sonolube.tasks.task import refuse_unused, shown, task
 
 _AXIS_KEYS = ("sliding.sliding_speed", "contact.normal_load", VOLTAGE.key, AMPLITUDE.key, "drive.frequency")
 _MEASURED_CAPTION = "Friction reduction between the measured runs alone by a Gaussian process, with its uncertainty."
@@ -67,6 +68,7 @@ def map(  # noqa: A001 - the command's name
     mapping: MappedRuns = None,
     target_reduction: Annotated[Number | None, TARGET_REDUCTION] = None,
     confidence: Annotated[Number | None, CONFIDENCE] = None,
+    evidence: Evidence = None,
     form: Annotated[
         Sequence[Literal["png", "pdf", "svg", "html"]],
         Parameter("png, pdf, svg or an interactive html; may come again."),
@@ -84,7 +86,9 @@ def map(  # noqa: A001 - the command's name
     >>> round(float(answer["friction_reduction"].max()), 2)
     0.95
     """
-    known = rig_of(rig)
+    if target_reduction is None:
+        refuse_unused("evidence", because=f"without {shown('target_reduction')}, whose chance rests on it")
+    known, learned = rig_of(rig), evidence_of(evidence)
     refuse_replaced(known, over or {})
     chosen = _kind(known, kind)
     axes = _axes(known, chosen, over or {})
@@ -94,10 +98,12 @@ def map(  # noqa: A001 - the command's name
     with stage("mapping"):
         mapped = design.MAPS[chosen](known, **axes)
     target, wanted = target_chance(target_reduction, confidence)
+    learned_from: tuple[str, ...] = ()
     if target is not None:
         with stage("chances"):
-            chances = reduction_chances(known, runs=_with_amplitude(measured))
+            chances = reduction_chances(known, runs=_with_amplitude(measured), evidence=learned)
             mapped = with_chances(mapped, chances, friction_reduction=target)
+        learned_from = chances.caveats
     left_out: tuple[str, ...] = ()
     if measured is not None:
         unused = target is not None and _with_amplitude(measured) is None
@@ -111,6 +117,7 @@ def map(  # noqa: A001 - the command's name
         forms=tuple(form) or _FORMS,
         left_out=left_out,
         confidence=wanted,
+        learned_from=learned_from,
     )
 
 
@@ -125,6 +132,7 @@ class MapAnswer(Answer):
     forms: tuple[str, ...]
     left_out: tuple[str, ...] = ()
     confidence: float | None = None
+    learned_from: tuple[str, ...] = ()
 
     def blocks(self) -> Sequence[Block]:
         """Greatest reduction, ridge, chance of the target, and points without a result."""
@@ -140,9 +148,9 @@ class MapAnswer(Answer):
         return found | chance_object(self.mapped, confidence=self.confidence)
 
     def caveats(self) -> Sequence[str]:
-        """Caveats of the rig at its own operating point and of ratios on the map, and runs without a place on it."""
+        """Caveats of the rig at its own point and of ratios on the map, runs without a place, and own evidence."""
         ratios = 1 - self.mapped["friction_reduction"].values
-        return (*operating_caveats(self.rig), *ratio_caveats(friction_ratio=ratios), *self.left_out)
+        return (*operating_caveats(self.rig), *ratio_caveats(friction_ratio=ratios), *self.left_out, *self.learned_from)
 
     def figures(self) -> Mapping[str, Drawing]:
         """Contours of the map, and those between the measured runs."""

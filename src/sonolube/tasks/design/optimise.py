@@ -39,6 +39,7 @@ from sonolube.tasks.answer import Answer, Block, Dataset, Rows, Table, answer
 from sonolube.tasks.design.chances import CONFIDENCE
 from sonolube.tasks.design.control import friction_force
 from sonolube.tasks.files import InputFile, file_path
+from sonolube.tasks.own_evidence import Evidence, evidence_of
 from sonolube.tasks.own_tables import MappedRuns, Values, ends_by_key, refuse_replaced, runs_of, values_by_key
 from sonolube.tasks.parameters import (
     File,
@@ -195,8 +196,8 @@ class OptimisationAnswer(Answer):
         return found | results.chance_object(self.chance)
 
     def caveats(self) -> Sequence[str]:
-        """Values at the end of their range, heat beyond the amplifier's power, and a preload that is not given."""
-        return results.optimum_caveats(self.optimum)
+        """Values at the end of their range, heat beyond the amplifier's power, no preload, and own evidence."""
+        return (*results.optimum_caveats(self.optimum), *(() if self.chance is None else self.chance.caveats))
 
     def assumptions(self) -> Mapping[str, str]:
         """Quality factor and loss tangent of the ceramics, and the assumptions of the rig file."""
@@ -306,6 +307,7 @@ def optimise(
     confidence: Annotated[Number | None, CONFIDENCE] = None,
     runs: Annotated[RunsSource, _RUNS] = None,
     mapping: MappedRuns = None,
+    evidence: Evidence = None,
     over: Annotated[Values | None, _OVER] = None,
     actuator: Annotated[Sequence[str], _ACTUATOR] = (),
     catalogue: Annotated[InputFile | None, _CATALOGUE] = None,
@@ -383,13 +385,14 @@ def optimise(
     wanted = in_si("confidence", confidence)
     if wanted is not None and not 0 < wanted < 1:
         raise InvalidInput(f"{shown('confidence')} must lie between 0 and 100 %, got {100 * wanted:.4g} %")
-    measured = runs_of(runs, mapping)
+    measured, learned = runs_of(runs, mapping), evidence_of(evidence)
     with stage("optimising") as advance:
         optimum, chance = optimum_with_chance(
             problem,
             known,
             confidence=wanted,
             runs=measured,
+            evidence=learned,
             minimise=minimise,
             second_objective=pareto,
             samples=samples,

@@ -18,6 +18,7 @@ from sonolube.report.measurement import pin_on_disc_checklist
 from sonolube.report.results.design import plan_of_tests as results
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, Block, Rows, Table, answer
+from sonolube.tasks.own_evidence import Evidence, evidence_of
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import Disc, File, Number, Parameter, Pin, Quantity, RigFile, RunsSource, rig_of
 from sonolube.tasks.task import in_si, shown, task
@@ -109,6 +110,7 @@ def plan(
         RunsSource, File("Own earlier runs: they give the scatter and update the prediction.", "RUNS.csv")
     ] = None,
     mapping: MappedRuns = None,
+    evidence: Evidence = None,
     speed: Annotated[
         str | None,
         Parameter("Sliding speeds, such as 20:200mm/s or 20,40,87mm/s; by default 1/3 to 3 times the rig's.", "VALUES"),
@@ -174,6 +176,7 @@ def plan(
             mean_temperature_rise=in_si("temperature_rise", temperature_rise),
         ),
         runs=runs_of(runs, mapping),
+        evidence=evidence_of(evidence),
         pin=pin,
         disc=disc,
         seed=seed,

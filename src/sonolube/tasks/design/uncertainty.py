@@ -15,6 +15,7 @@ from sonolube.design.uncertainty_summary import Band, RankedEntry, outcome_band,
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.prediction.evidence import large_amplitude_caveats
+from sonolube.prediction.evidence_posterior import EvidencePosterior
 from sonolube.report import Drawing, Page
 from sonolube.report.results.design import uncertainty as results
 from sonolube.report.results.design.uncertainty import agreement
@@ -22,6 +23,7 @@ from sonolube.report.results.rig_point import BeyondTheModel, beyond_the_model
 from sonolube.rig import Rig, operating_caveats, steady_vibration
 from sonolube.rig.resolved_rig import ResolvedRig, resolved_rig
 from sonolube.tasks.answer import Answer, Block, Dataset, answer
+from sonolube.tasks.own_evidence import Evidence, evidence_of
 from sonolube.tasks.own_tables import Values, refuse_replaced, values_by_key
 from sonolube.tasks.parameters import (
     DoorParameter,
@@ -35,7 +37,7 @@ from sonolube.tasks.parameters import (
     rig_of,
 )
 from sonolube.tasks.progress import stage
-from sonolube.tasks.task import shown, task
+from sonolube.tasks.task import refuse_unused, shown, task
 
 _SAMPLES_CAPTION = "Histogram of the samples that have a result, quantiles with intervals of 95 %, and the mean."
 _OF_THE_MODEL = ("friction_ratio", "friction_reduction")  # outcomes that have the error of the friction model
@@ -69,6 +71,7 @@ def uncertainty(
     seed: Annotated[int, Parameter("Of the samples.", lowest=0)] = 0,
     workers: Annotated[int, Parameter("Threads.", lowest=1)] = 2,
     interval: Interval = True,
+    evidence: Evidence = None,
     keep: Annotated[Kept | None, DoorParameter(files="sweep.nc sweep.json")] = None,
     **watch: Unpack[Watched],
 ) -> "UncertaintyAnswer":
@@ -81,7 +84,11 @@ def uncertainty(
             f"{shown('sobol')} needs independent entries and one outcome each: leave out {shown('over')} and"
             f" {shown('identified')}"
         )
-    known = rig_of(rig)
+    if not interval or of not in _OF_THE_MODEL:
+        refuse_unused(
+            "evidence", because=f"without {shown('interval')} of {' or '.join(_OF_THE_MODEL)}, which rests on it"
+        )
+    known, learned = rig_of(rig), evidence_of(evidence)
     refuse_replaced(known, over or {})
     axes = _axes(over or {})
     structure = None
@@ -102,7 +109,7 @@ def uncertainty(
             workers=workers,
             advance=lambda done, total: advance("points", done, total),
         )
-    found = UncertaintyAnswer(rig=known, result=result, structure=structure, interval=interval)
+    found = UncertaintyAnswer(rig=known, result=result, structure=structure, interval=interval, evidence=learned)
     if result[of].isnull().all():
         raise InvalidInput(f"no sample has a result: {next(iter(found.failures()))}")
     return found
@@ -116,6 +123,7 @@ class UncertaintyAnswer(Answer):
     result: Dataset
     structure: IdentifiedStructure | None
     interval: bool = True
+    evidence: EvidencePosterior | None = None
 
     def blocks(self) -> Sequence[Block]:
         """Statistics or band, statuses, uncertain entries, and their ranking."""
@@ -144,7 +152,8 @@ class UncertaintyAnswer(Answer):
         if self.structure is not None and not self.structure.posterior.has_converged:
             caveats.append(agreement(self.structure))
         meaning = ratio_caveats(friction_ratio=self.result[self._of].values) if self._of == "friction_ratio" else ()
-        return [*caveats, *operating_caveats(self._resolved), *meaning]
+        of_model = self._beyond.caveats() if self._of in _OF_THE_MODEL else ()
+        return [*caveats, *operating_caveats(self._resolved), *meaning, *of_model]
 
     def leading_caveats(self) -> Sequence[str]:
         """An amplitude beyond that of all published tests, where friction is the outcome."""
@@ -225,7 +234,7 @@ class UncertaintyAnswer(Answer):
     @cached_property
     def _beyond(self) -> BeyondTheModel:
         """Uncertainty of the friction ratio that the samples leave out."""
-        return beyond_the_model(self._resolved, self.rig.friction_model, interval=self.interval)
+        return beyond_the_model(self._resolved, self.rig.friction_model, interval=self.interval, evidence=self.evidence)
 
     @cached_property
     def _ranking(self) -> list[RankedEntry]:

@@ -35,6 +35,7 @@ from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, NoSelfTest, Seed, Tags, facts_of
+from sonolube.tasks.own_evidence import Evidence, evidence_of
 from sonolube.tasks.parameters import (
     DoorParameter,
     File,
@@ -63,6 +64,8 @@ class RunAnswer(Answer):
     rig : Rig or None
     rehearsed : Rehearsal or None
         Devices of a device map on the virtual rig.
+    learned_from : tuple of str
+        Own published tests that the friction of the virtual rig was learned from too.
     """
 
     result: RunState
@@ -70,6 +73,7 @@ class RunAnswer(Answer):
     simulated: bool
     rig: Rig | None = None
     rehearsed: Rehearsal | None = None
+    learned_from: tuple[str, ...] = ()
 
     def blocks(self) -> Sequence[Block]:
         """Outcome, what was recorded, what each channel of a map reads, and the next command."""
@@ -85,7 +89,8 @@ class RunAnswer(Answer):
     def caveats(self) -> Sequence[str]:
         """Caveats of the record, faults, and channels that are not simulated."""
         found = results.run_caveats(self.run, self.rig) if self.simulated else self.run.caveats
-        return found if self.rehearsed is None else (*self.rehearsed.caveats, *found)
+        reads = () if self.rehearsed is None else self.rehearsed.caveats
+        return (*reads, *found, *self.learned_from)
 
     def assumptions(self) -> Mapping[str, str]:
         """Assumptions of the rig file, where the friction is that of the rig."""
@@ -118,12 +123,15 @@ class DryRunAnswer(Answer):
         On a virtual rig.
     rehearsed : Rehearsal or None
         Devices of a device map on the virtual rig.
+    learned_from : tuple of str
+        Own published tests that the friction of the virtual rig was learned from too.
     """
 
     protocol: Protocol
     found: DryRun
     expected: ExpectedTime | None = None
     rehearsed: Rehearsal | None = None
+    learned_from: tuple[str, ...] = ()
 
     def blocks(self) -> Sequence[Block]:
         """A row a set point, then time, data, drive and temperatures; what is impossible last."""
@@ -141,7 +149,8 @@ class DryRunAnswer(Answer):
 
     def caveats(self) -> Sequence[str]:
         """Faults, channels that are not simulated, and caveats of the plan."""
-        return self.found.caveats if self.rehearsed is None else (*self.rehearsed.caveats, *self.found.caveats)
+        reads = () if self.rehearsed is None else self.rehearsed.caveats
+        return (*reads, *self.found.caveats, *self.learned_from)
 
     def assumptions(self) -> Mapping[str, str]:
         """Assumptions about drive and heat."""
@@ -237,6 +246,7 @@ def run_and_record(
         simulated=devices.simulated,
         rig=request.rig,
         rehearsed=virtual if isinstance(virtual, Rehearsal) else None,
+        learned_from=request.evidence_caveats,
     )
 
 
@@ -354,6 +364,7 @@ def virtual(
         Sequence[str],
         Parameter("Of the rig of a map, such as load_50_ohm, or overload_trip@2s; may come again.", "NAME"),
     ] = (),
+    evidence: Evidence = None,
     seed: Annotated[int, Parameter("Of all that is drawn: another specimen, other noise.", lowest=0)] = 0,
     file_format: Annotated[
         Literal["netcdf", "tdms", "csv"], Parameter("Of the recording, beside netCDF.", option="--format")
@@ -374,7 +385,9 @@ def virtual(
     if protocol is None:
         read = protocol_at(read, normal_load=known.normal_load, sliding_speed=known.sliding_speed)
     file = None if device_map is None else file_path(device_map)
-    wanted = RunRequest(protocol=read, name=Path(path).stem, rig=known, device_file=file, seed=seed)
+    wanted = RunRequest(
+        protocol=read, name=Path(path).stem, rig=known, device_file=file, seed=seed, evidence=evidence_of(evidence)
+    )
     if dry_run:
         refuse_unused("file_format", "out", because=f"with {shown('dry_run')}, which records nothing")
     simulated = _virtual_rig(wanted) if file is None else _rehearsal(wanted, file, fault)
@@ -397,6 +410,7 @@ def _planned(wanted: RunRequest, simulated: VirtualTribometer | Rehearsal, file:
         found=found,
         expected=None if found.refusals else simulated.expected_time(wanted.protocol),
         rehearsed=simulated if isinstance(simulated, Rehearsal) else None,
+        learned_from=wanted.evidence_caveats,
     )
 
 
@@ -412,7 +426,9 @@ def _rehearsal(wanted: RunRequest, file: Path, faults: Sequence[str]) -> Rehears
     """Devices of a map on the virtual rig of a run."""
     assert wanted.rig is not None
     rig = _loaded(wanted.rig, wanted)
-    return rehearsal(read_device_map(file), rig, wanted.protocol, seed=wanted.seed, faults=faults)
+    return rehearsal(
+        read_device_map(file), rig, wanted.protocol, seed=wanted.seed, faults=faults, evidence=wanted.evidence
+    )
 
 
 def _loaded(rig: Rig, wanted: RunRequest) -> Rig:
@@ -435,4 +451,11 @@ def _virtual_rig(wanted: RunRequest, *, real_time: bool = False) -> VirtualTribo
     rig = _loaded(wanted.rig, wanted)
     diameter = metadata.groove_diameter or GROOVE_DIAMETER
     sizes = Disturbances(contact_share=float(metadata.thermocouple == "contact"))
-    return virtual_tribometer(rig, seed=wanted.seed, real_time=real_time, disturbances=sizes, groove_diameter=diameter)
+    return virtual_tribometer(
+        rig,
+        seed=wanted.seed,
+        real_time=real_time,
+        disturbances=sizes,
+        groove_diameter=diameter,
+        evidence=wanted.evidence,
+    )

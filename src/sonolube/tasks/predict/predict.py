@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, TypeAlias
 
 from sonolube.measurement.run_columns import runs_help
-from sonolube.prediction.evidence_posterior import EvidencePosterior
 from sonolube.prediction.figures import prediction_chart
 from sonolube.prediction.live_prediction import LivePrediction
 from sonolube.prediction.predictive import DRAWS
@@ -15,7 +14,7 @@ from sonolube.report.results.rig_point import measured_object, measured_on, meas
 from sonolube.rig import Rig
 from sonolube.rig.datasets import LabelledArrays
 from sonolube.tasks.answer import Answer, Block, Dataset, Table, answer
-from sonolube.tasks.files import InputFile, file_path
+from sonolube.tasks.own_evidence import Evidence, evidence_of
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import Disc, File, KeyValues, Parameter, Pin, RigFile, RigSource, RunsSource, rig_of
 from sonolube.tasks.task import task
@@ -28,10 +27,6 @@ _LABORATORY = KeyValues(
     "Another rig of your laboratory with its runs, which tell of the contact's decay length; may be repeated.",
     "RIG.toml=RUNS.csv",
 )
-_EVIDENCE = File(
-    "Posterior by shipped and your own published tests, as sonolube evidence learn writes it, in place of the shipped.",
-    "POSTERIOR.json",
-)
 _MEASURE_HEADS = ["what would narrow it", "leaves of the interval"]
 
 
@@ -42,7 +37,7 @@ def predict(
     runs: Annotated[RunsSource, File(runs_help("Own measured runs"), "RUNS.csv")] = None,
     mapping: MappedRuns = None,
     laboratory: Annotated[Laboratory, _LABORATORY] = None,
-    evidence: Annotated[InputFile | EvidencePosterior | None, _EVIDENCE] = None,
+    evidence: Evidence = None,
     pin: Pin = None,
     disc: Disc = None,
     lubricant: Annotated[bool, Parameter("The contact is lubricated: a dry prediction does not hold.")] = False,
@@ -67,7 +62,7 @@ def predict(
         known,
         runs=runs_of(runs, mapping),
         laboratory_runs=_rigs_with_runs(laboratory),
-        evidence=file_path(evidence) if isinstance(evidence, InputFile) else evidence,
+        evidence=evidence_of(evidence),
         pin=pin,
         disc=disc,
         lubricant=lubricant,

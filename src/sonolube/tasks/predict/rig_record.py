@@ -35,9 +35,10 @@ from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.rig.responses import simulation_arrays
 from sonolube.rig.simulation import friction_model_named, mechanism_text
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer, si
+from sonolube.tasks.own_evidence import Evidence, evidence_of
 from sonolube.tasks.parameters import Interval, Number, Parameter, Quantity, RestingRig, RigFile, Watched, rig_of
 from sonolube.tasks.progress import stage
-from sonolube.tasks.task import in_si, plausible, shown, task
+from sonolube.tasks.task import in_si, plausible, refuse_unused, shown, task
 from sonolube.text.units import format_quantity, format_si
 from sonolube.validation.published_tests import FrictionTest
 from sonolube.vocabulary import quantities
@@ -65,6 +66,8 @@ class RigRecord(Answer):
         Names and texts before the quantities.
     leading : sequence of str
         Caveats that stand above the result.
+    further_caveats : sequence of str
+        Caveats after those of the record.
     at_least : collection of str
         Quantities of which a lower bound is known.
     rows : sequence of tuple of str
@@ -81,6 +84,7 @@ class RigRecord(Answer):
     verdict: PointVerdict | None = None
     headline: Sequence[tuple[str, str]] = ()
     leading: Sequence[str] = ()
+    further_caveats: Sequence[str] = ()
     at_least: Collection[str] = ()
     rows: Sequence[tuple[str, str]] = ()
     entries: Mapping[str, Any] = field(default_factory=dict)
@@ -122,8 +126,7 @@ class RigRecord(Answer):
 
     def caveats(self) -> Sequence[str]:
         """Caveats of the record."""
-        caveats: Sequence[str] = self.result.caveats
-        return caveats
+        return (*self.result.caveats, *self.further_caveats)
 
     def leading_caveats(self) -> Sequence[str]:
         """Caveats that question the whole record."""
@@ -189,7 +192,11 @@ def _lower_bounds(power: PowerToSupply | None) -> Sequence[str]:
 
 @task
 def friction(
-    rig: RigFile, *, model: Annotated[str | None, _FRICTION_MODEL] = None, interval: Interval = True
+    rig: RigFile,
+    *,
+    model: Annotated[str | None, _FRICTION_MODEL] = None,
+    interval: Interval = True,
+    evidence: Evidence = None,
 ) -> RigRecord:
     """Friction of the rig with and without vibration.
 
@@ -208,7 +215,9 @@ def friction(
     resolved = resolved_rig(known)
     result = friction_point(resolved, model=model)
     by = known.friction_model if model is None else friction_model_named(known, model)
-    beyond = beyond_the_model(resolved, by, interval=interval)
+    if not interval:
+        refuse_unused("evidence", because=f"without {shown('interval')}, which rests on it")
+    beyond = beyond_the_model(resolved, by, interval=interval, evidence=evidence_of(evidence))
     mechanism = mechanism_text(resolved.with_friction_model(by)) if result.reason is None else ""
     return RigRecord(
         rig=known,
@@ -219,6 +228,7 @@ def friction(
         leading=large_amplitude_caveats(resolved, vibration_amplitude=result.vibration_amplitude),
         headline=beyond.predicted(),
         rows=[*([("mechanism", mechanism)] if mechanism else []), *beyond.left_out()],
+        further_caveats=beyond.caveats(),
         entries=({"mechanism": mechanism} if mechanism else {}) | beyond.object(),
     )
 
