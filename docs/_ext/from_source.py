@@ -22,6 +22,7 @@ from typing import Any, ClassVar
 import numpy as np
 from docutils import nodes
 from docutils.parsers.rst import directives
+from one_law_scores import HEADS, law_scores, law_verdict
 from sentences import first_prediction
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
@@ -298,6 +299,16 @@ def blind_plane_headline() -> str:
     return plane_caption()
 
 
+def one_law() -> str:
+    """Blind scores of one law for all directions beside those of the laws that ship."""
+    return _grid(HEADS, [one.row for one in law_scores()])
+
+
+def one_law_verdict() -> str:
+    """By how much the laws that were tried are worse than those that ship."""
+    return law_verdict(law_scores())
+
+
 TABLES: Mapping[str, Callable[[], str]] = {
     table.__name__: table
     for table in (
@@ -325,6 +336,8 @@ TABLES: Mapping[str, Callable[[], str]] = {
         blind_headline,
         blind_plane,
         blind_plane_headline,
+        one_law,
+        one_law_verdict,
         first_prediction,
     )
 }
