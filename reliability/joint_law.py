@@ -160,12 +160,6 @@ class JointPopulation:
         logs = self.log_weights()
         return float(np.exp(2 * np.logaddexp.reduce(logs) - np.logaddexp.reduce(2 * logs)))
 
-    def quantiles(self, column: int, probabilities: Sequence[float]) -> Floats:
-        """Quantiles of a column of the draws by all rigs."""
-        logs, order = self.log_weights(), np.argsort(self.draws[:, column])
-        shares = np.cumsum(np.exp(logs[order] - np.logaddexp.reduce(logs)))
-        return np.interp(probabilities, shares, self.draws[order, column])
-
     def unseen(self, place: int) -> list[UnseenPrediction]:
         """Predictions of the tests of a rig by those on all other rigs."""
         rig, logs = self.rigs[place], self.log_weights(without=(place,))

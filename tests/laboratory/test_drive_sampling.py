@@ -15,6 +15,7 @@ from sonolube.laboratory.interlocks import drive_sampling, recorded_channels
 AT_400_HZ = "voltage and current at 400 Hz do not resolve the drive (fewer than five samples a period)"
 SHIPPED = {  # sample rates and drives as printed in the dissertation's tables
     "appendix_a": AT_400_HZ,
+    "both_directions": AT_400_HZ,
     "decay_length_run": AT_400_HZ,  # the voltage at 60 kHz is not resolved either
     "lubrication_comparison": AT_400_HZ,
     "map_test": AT_400_HZ,

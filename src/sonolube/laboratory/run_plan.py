@@ -321,6 +321,8 @@ def _facts(request: RunRequest, devices: Devices, limits: RunLimits) -> dict[str
             "nominal_area": rig.contact.nominal_area,
         }
         facts |= {name: value for name in ("pin_material", "disc_material") if (value := getattr(rig, name))}
+        if rig.direction.word is not None:
+            facts["vibration_direction"] = rig.direction.word
         if rig.changes:
             facts["changed_entries"] = "; ".join(rig.changes)
     if request.device_file is not None:

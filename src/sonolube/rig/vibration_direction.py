@@ -104,6 +104,13 @@ class VibrationDirection:
         object.__setattr__(self, "second_direction", second if self.second_fraction > 0 else None)
 
     @property
+    def word(self) -> str | float | None:
+        """Its word, or its angle to the sliding, in rad; None of two components, for which neither stands."""
+        if self.second_direction is not None:
+            return None
+        return self.direction if self.vibration_direction is None else self.vibration_direction
+
+    @property
     def is_normal(self) -> bool:
         """Whether the vibration is along the normal alone."""
         return self.direction == "normal" and self.second_direction is None

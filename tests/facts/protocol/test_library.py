@@ -59,6 +59,7 @@ TOTALS = {
     "waveguide_calibration": 5 * 30 + 11 / (54.9 / 60),  # Table 2.8: 11 rounds at 54.9 rpm; loops assumed
     "lubrication_comparison": 4 * 3 * (1 + 9 * 5),  # D 4.2.2: four methods, three loads; times assumed
     "resonance_sweep": 81 * 0.5,  # assumed
+    "both_directions": 76.5 + 9 * (1 + 12 + 6 * 6),  # run-in of 5 m; three speeds thrice, six voltages; assumed
     "decay_length_run": 60 * (5 / 0.065 + 21 * 0.05 + 5),  # 300 m switched every 5 m; sweep and zero assumed
 }
 
@@ -149,6 +150,17 @@ def test_the_temperature_test_steps_through_the_voltages_of_its_table() -> None:
     driven = [point for point in flattened(protocol_by_name_or_file("temperature_test")) if point.voltage_peak_to_peak]
     voltages = list(dict.fromkeys(point.voltage_peak_to_peak for point in driven))
     assert voltages == [5.1, 10.3, 15.5, 20.7, 25.9]  # Table 4.4
+
+
+def test_the_ladder_for_both_directions_has_six_voltages_at_three_speeds_behind_five_metres_of_run_in() -> None:
+    protocol = protocol_by_name_or_file("both_directions")
+    points = flattened(protocol)
+    rungs = {(point.sliding_speed, point.voltage_peak_to_peak) for point in points if point.voltage_peak_to_peak}
+    voltages = [2.6, 5.2, 10.4, 15.6, 20.8, 25.9]
+    assert rungs == {(speed, voltage) for speed in (5e-3, 20e-3, 65.5e-3) for voltage in voltages}
+    assert all(point.voltage_offset == pytest.approx(point.voltage_peak_to_peak / 2) for point in points)
+    on, off, *_ = (point.time for point in points if point.kind == "motor_speed")
+    assert 65.5e-3 * (off - on) == pytest.approx(5.0, rel=3e-3)  # m
 
 
 def test_appendix_a_scans_eight_marks_of_six_discs_and_calibrates_ten_speeds() -> None:

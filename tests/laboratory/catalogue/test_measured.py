@@ -1,5 +1,6 @@
 """Friction of recorded runs: means and uncertainties of levels by hand, rows of runs, and recordings taken in."""
 
+from math import pi
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from sonolube.laboratory.catalogue.measured import (
     _recordings,
     _separate_levels,
     _steady_change,
+    catalogued_runs,
     level_rows,
 )
 from sonolube.laboratory.records import new_run, read_run
@@ -108,9 +110,16 @@ FORCE = Channel(name="friction_force", quantity="friction_force")
 HEAT = Channel(name="temperature", quantity="temperature")
 
 
-def run_of(parent: Path, stretches: list[tuple[dict[str, Any], float]], *, channel: Channel = FORCE) -> Path:
+def run_of(
+    parent: Path,
+    stretches: list[tuple[dict[str, Any], float]],
+    *,
+    channel: Channel = FORCE,
+    direction: str | float | None = None,
+) -> Path:
     """Folder of a run of 4 s each with what was set and the friction then."""
-    facts = {"block": 2, "nominal_area": 1.5e-6}
+    facts: dict[str, Any] = {"block": 2, "nominal_area": 1.5e-6}
+    facts |= {} if direction is None else {"vibration_direction": direction}
     recorder = new_run(parent, title="Levels", protocol="", facts=facts)
     recorder.note("prepared")
     recorder.begin([channel], sample_rate=100.0)
@@ -140,7 +149,7 @@ def test_a_row_has_what_was_set_and_the_friction_of_each_level(tmp_path: Path) -
     assert head[:6] == [
         *("run", "block", "normal_load [N]", "sliding_speed [m/s]", "voltage_peak_to_peak [V]", "frequency [Hz]")
     ]
-    assert head[10:] == ["nominal_area [m2]", "study", "source", "note"]
+    assert head[10:] == ["nominal_area [m2]", "study", "source", "note", "vibration_direction [rad]"]
     told = [dict(zip(head, row, strict=True)) for row in rows]
     assert {(row["run"], row["block"], row["nominal_area [m2]"], row["study"], row["source"]) for row in told} == {
         (folder.name, "2", "1.5e-06", "Levels", str(folder))
@@ -181,6 +190,20 @@ def recording(path: Path, **columns: np.ndarray) -> None:
     heads = ["time (s)", *(f"{name} ({UNITS[name]})" for name in columns)]
     values = np.stack([np.arange(500) / 100, *columns.values()], 1)
     np.savetxt(path, values, delimiter=",", header=",".join(heads), comments="")
+
+
+@pytest.mark.parametrize(
+    ("direction", "angle", "word"),
+    [("along", 0.0, "along"), ("across", pi / 2, "across"), ("normal", np.nan, "normal"), (0.5, 0.5, None)],
+)
+def test_rows_have_the_direction_of_their_rig(
+    direction: str | float, angle: float, word: str | None, tmp_path: Path
+) -> None:
+    run_of(tmp_path, [(SLIDES, 1.0), ({"voltage_peak_to_peak": 20.0, "frequency": 21e3}, 0.4)], direction=direction)
+    found = catalogued_runs(f"catalogue:in={tmp_path}")
+    assert found["vibration_direction"].to_numpy() == approx(np.full(found.sizes["run"], angle), nan_ok=True)
+    if word is not None:
+        assert set(found["vibration_direction_word"].to_numpy().tolist()) == {word}
 
 
 UNITS = {"friction_force": "N", "voltage_peak_to_peak": "V", "temperature": "K"}

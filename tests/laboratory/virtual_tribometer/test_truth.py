@@ -15,9 +15,13 @@ from sonolube.laboratory.virtual_tribometer.signals import Bursts, StickSlip
 from sonolube.laboratory.virtual_tribometer.truth import FrictionLevel, Temperatures, TruthSetting, truth_dataset
 from sonolube.models.thermal import EllipticSource, contact_rise
 from sonolube.models.wear import cube_wear_rate
+from sonolube.prediction.evidence_posterior import EvidencePosterior
+from sonolube.prediction.posterior import learned
+from sonolube.prediction.within_plane import plane_posterior
 from sonolube.rig import read_rig, simulate, thermal_solid
 
-RIG = read_rig(Path(__file__).parents[3] / "examples" / "rigs" / "power_map.toml")
+RIG_FILE = Path(__file__).parents[3] / "examples" / "rigs" / "power_map.toml"
+RIG = read_rig(RIG_FILE)
 DRIVE = DriveSetting(voltage_peak_to_peak=25.9, frequency=22e3, voltage_offset=12.95)
 
 
@@ -55,6 +59,36 @@ def test_with_vibration_amplitude_and_wear_are_those_of_the_rig_at_that_setting_
     assert found.wear_rate == approx(float(at.wear.wear_rate))
     assert 0.01 <= found.friction_ratio < 1
     assert found.friction_force == approx(found.friction_ratio * draw.friction_coefficient * 4.0)
+
+
+def test_along_the_sliding_friction_lies_above_that_of_rigid_contacts_and_wears_as_without_vibration() -> None:
+    assert RIG.drive is not None
+    rig = read_rig(RIG_FILE, changes=["vibration.direction=along", "friction.model=coulomb"])
+    draw = FrictionDraw(rig, seed=3)
+    ratios = []
+    for volt in (2.6, 10.4, 25.9):
+        found = draw.at(volts(volt), 0.02)
+        peak = 2 * np.pi * 22e3 * found.vibration_amplitude
+        assert 2 / np.pi * np.arcsin(min(0.02 / peak, 1.0)) - 1e-9 <= found.friction_ratio <= 1
+        assert found.wear_rate == approx(float(cube_wear_rate(rig.contact, normal_load=5.0)))
+        ratios.append(found.friction_ratio)
+    assert ratios == sorted(ratios, reverse=True)
+    assert ratios[-1] < ratios[0]
+
+
+@pytest.mark.parametrize("direction", ["normal", "along"])
+def test_friction_is_drawn_from_own_evidence_in_its_direction(direction: str) -> None:
+    # of lengths a thousand times the amplitude vibration does next to nothing
+    normal, plane = learned().friction.hyperparameters.copy(), plane_posterior().hyperparameters.copy()
+    normal[:, 1] += np.log(1e3)
+    plane[:, 0] += np.log(1e4)
+    evidence = EvidencePosterior(
+        hyperparameters=normal, plane_hyperparameters=plane, fingerprint="1", shipped_fingerprint="2", sources=()
+    )
+    changes = [f"vibration.direction={direction}"] + (["friction.model=coulomb"] if direction == "along" else [])
+    rig = read_rig(RIG_FILE, changes=changes)
+    assert FrictionDraw(rig, seed=3, evidence=evidence).at(DRIVE, 0.02).friction_ratio > 0.9
+    assert FrictionDraw(rig, seed=3).at(DRIVE, 0.02).friction_ratio < 0.8
 
 
 def test_the_ratio_never_falls_below_a_hundredth() -> None:

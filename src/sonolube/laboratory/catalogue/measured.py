@@ -115,7 +115,7 @@ _SIGNIFICANT: Final = 3.0  # standard errors, from which a force counts as risin
 _HEADER: Final = (
     *("run", "block", "normal_load [N]", "sliding_speed [m/s]", "voltage_peak_to_peak [V]", "frequency [Hz]"),
     *("friction_force [N]", "friction_force_uncertainty [N]", "friction_reduction", "friction_reduction_uncertainty"),
-    *("nominal_area [m2]", "study", "source", "note"),
+    *("nominal_area [m2]", "study", "source", "note", "vibration_direction [rad]"),
 )
 
 
@@ -208,7 +208,8 @@ def _rows(entry: CatalogueEntry, left_out: list[str]) -> list[list[str]]:
     run = read_run(entry.summary.folder)
     run.dataset(1)  # refuses runs without a recording
     block, area = run.facts.get("block", ""), run.facts.get("nominal_area", "")
-    told = (str(area), entry.summary.title, str(entry.summary.folder), "")
+    direction = run.facts.get("vibration_direction", "")
+    told = (str(area), entry.summary.title, str(entry.summary.folder), "", str(direction))
     rows = []
     lubricated = list[str]()
     for part in range(1, len(run.recordings) + 1):

@@ -72,13 +72,14 @@ class FrictionDraw:
     Notes
     -----
     Coefficient of friction and friction ratio are one draw of those that `sonolube predict` gives for the rig: from
-    the posterior of the population, with the spreads of the rig's inputs. The wear rate is that of the rig's wear model
-    without scatter, the same as without vibration where the model gives none. A controller asks for hundreds of
-    voltages: levels are computed until two voltages are within 2 % of the rig's own, and interpolated between these.
+    the posterior of the population in its direction of vibration, with the spreads of the rig's inputs. The wear rate
+    is that of the rig's wear model without scatter, the same as without vibration where the model gives none, as within
+    the plane. A controller asks for hundreds of voltages: levels are computed until two voltages are within 2 % of the
+    rig's own, and interpolated between these.
     """
 
     def __init__(self, rig: Rig, *, seed: int, evidence: EvidencePosterior | None = None) -> None:
-        self._inputs = rig_inputs(rig)
+        self._inputs = rig_inputs(rig, takes_plane=True)
         self._rig, self._seed = rig, seed
         self._population = population_of(rig.direction, evidence)
         rng = np.random.default_rng(seed)

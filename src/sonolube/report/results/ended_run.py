@@ -130,6 +130,8 @@ def run_caveats(run: Run, rig: Rig | None) -> list[str]:
     applied = {str(note.facts["lubricant"]): 0 for note in run.notes if note.facts.get("lubricant")}
     if applied:
         found.append(f"the virtual rig knows no lubricant: with {', '.join(applied)} its friction is that without")
+    if rig is not None and not rig.direction.is_normal:
+        found.append(f"the vibration is {rig.direction.text}, of which no wear law is: it wears as without vibration")
     return [*found, SIMULATED]
 
 
