@@ -182,9 +182,8 @@ def _with_friction_positive(variables: _Variables) -> tuple[_Variables, list[str
 
     A velocity, or a speed that changes its sign, tells that the friction does: the signs of both belong together.
     """
-    if _VELOCITY in variables or any(
-        name in variables and _of_both_signs(variables[name][1]) for name in _SIGNED_SPEEDS
-    ):
+    speeds = [variables[name][1] for name in _SPEEDS if name in variables]
+    if _VELOCITY in variables or any(map(_of_both_signs, speeds)):
         return variables, []
     changed, caveats = dict(variables), []
     for name in _FRICTION & variables.keys():
