@@ -32,7 +32,7 @@ def _trial(seed: int) -> Record:
     record: dict[str, object] = {}
     for name, own in (("without", None), ("after", _run(rng, inputs, truth))):
         found = rig_prediction(learned().friction, inputs.at(), count=_DRAWS, own=own)
-        chances = ReductionChances(inputs=inputs, prediction=found, runs=0 if own is None else 1)
+        chances = ReductionChances(inputs=inputs, prediction=found)
         chosen = chances.least_amplitude(
             _REDUCTION, confidence=_CONFIDENCE, highest=float(_AMPLITUDES[-1]), frequency=inputs.frequency
         )

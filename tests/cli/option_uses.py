@@ -31,7 +31,8 @@ SWITCHES = str(ROOT / "examples" / "decay-length-run.csv")
 OVER = ("--over", "sliding.sliding_speed=20mm/s,50mm/s")
 STUDY = {"--over": OVER[1], "--of": "waveform", "--from": "", "--to": "", "--points": "4", "--voltage": "10V"}
 DRAWN = {"--sample": "lhs", "--seed": "1", "--workers": "1", "--scheduler": "local", "--chunk": "7"}
-SWEEP = STUDY | DRAWN | LOADED | {"--amplitude": "computed"}
+MEASURED = {"--runs": OWN_RUNS, "--mapping": "FOLDER/halved.toml"}  # own runs behind a prediction
+SWEEP = STUDY | DRAWN | LOADED | MEASURED | {"--amplitude": "computed"}
 SHEETS = {"--test-sheet": "FOLDER/sheet.toml", "--report": "OUT/page.html"}
 KNOWN = (
     *("--pin", "aluminium_2024", "--disc", "stainless_steel_316", "--load", "5N", "--speed", "0.2m/s"),
@@ -404,6 +405,10 @@ MODES = {
         "sweep",
         (FLAT, "--of", "amplitude", "--points", "3"),
         {"--of": "load", "--from": "2um", "--to": "8um", "--points": "4", "--vibration": "3um", "--voltage": "3V"},
+    ),
+    "sweep beside own runs": Mode("sweep", (RIG, *OVER, "--runs", OWN_RUNS), {"--mapping": "FOLDER/halved.toml"}),
+    "study beside own runs": Mode(
+        "sweep", (RIG, "--of", "speed", "--points", "3", "--runs", OWN_RUNS), {"--mapping": "FOLDER/halved.toml"}
     ),
     "sweep of speed at amplitudes": Mode(
         "sweep", (FLAT, "--of", "speed", "--points", "3"), {"--vibration": "30um", "--to": "0.5m/s"}

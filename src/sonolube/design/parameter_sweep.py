@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sonolube.design.sweep_dataset import ChunkStore, MemoryDatasetWriter, NetCDFDatasetWriter
+from sonolube.design.sweep_dataset import ChunkStore, FurtherColumns, MemoryDatasetWriter, NetCDFDatasetWriter
 from sonolube.design.sweep_plan import OPERATING_CONDITIONS, SweepPlan
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.execution.threads import thread_pool
@@ -42,6 +42,7 @@ def sweep(
     workers: int = 1,
     scheduler: str | None = None,
     advance: ProgressCallback | None = None,
+    further: FurtherColumns | None = None,
 ) -> "xr.Dataset":
     """Operating points of a rig at every point of a plan, with a status for each.
 
@@ -59,6 +60,8 @@ def sweep(
         Address of a Dask scheduler, or "local" for a cluster of processes on this machine; needs the extra `cluster`.
     advance : callable, optional
         Called with the number of finished points and their total.
+    further : FurtherColumns, optional
+        Columns beside the numbers of the points, such as `predicted_results.PredictedColumns`.
 
     Returns
     -------
@@ -93,7 +96,9 @@ def sweep(
     count = -(-plan.points // chunk_points)
     with (
         nullcontext() if store is None else store.opened(),
-        nullcontext(MemoryDatasetWriter(plan)) if store is None else NetCDFDatasetWriter(plan, store.folder) as writer,
+        nullcontext(MemoryDatasetWriter(plan, further))
+        if store is None
+        else NetCDFDatasetWriter(plan, store.folder, further) as writer,
     ):
         done = 0
         missing = []

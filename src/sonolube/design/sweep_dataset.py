@@ -3,12 +3,12 @@
 import hashlib
 import io
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +29,27 @@ _MEANINGS = {"reason": "Index of the reason in reason_text", "reason_text": "Rea
 _CODES: dict[str, type[np.signedinteger[Any]]] = {"status": np.int8, "reason": np.int16}
 
 
+class FurtherColumns(Protocol):
+    """Columns of a sweep beside the numbers of its points."""
+
+    @property
+    def labels(self) -> Mapping[str, Mapping[str, Any]]:
+        """Attributes by the names of the columns; those with `flag_values` are codes of their type."""
+
+    def of(self, rows: Mapping[str, NDArray[Any]], batch: PointBatch) -> Mapping[str, NDArray[Any]]:
+        """Columns of some points with the values of the swept keys."""
+
+
+def _kinds(further: FurtherColumns | None) -> dict[str, Any]:
+    """Type of each further column."""
+    if further is None:
+        return {}
+    return {
+        name: attrs["flag_values"].dtype if "flag_values" in attrs else np.float64
+        for name, attrs in further.labels.items()
+    }
+
+
 class _ReasonTable:
     """Distinct reasons of all chunks, each with its integer code."""
 
@@ -47,16 +68,18 @@ class MemoryDatasetWriter:
     Parameters
     ----------
     plan : SweepPlan
+    further : FurtherColumns, optional
 
     See Also
     --------
     NetCDFDatasetWriter
     """
 
-    def __init__(self, plan: SweepPlan) -> None:
-        self._plan, self._reasons = plan, _ReasonTable()
+    def __init__(self, plan: SweepPlan, further: FurtherColumns | None = None) -> None:
+        self._plan, self._further, self._reasons = plan, further, _ReasonTable()
         self._columns: dict[str, NDArray[Any]] = {name: np.empty(plan.points) for name in NUMBERS}
-        self._columns |= {name: np.empty(plan.points, dtype=kind) for name, kind in _CODES.items()}
+        kinds = _CODES | _kinds(further)
+        self._columns |= {name: np.empty(plan.points, dtype=kind) for name, kind in kinds.items()}
 
     def write(self, start: int, batch: PointBatch) -> None:
         """Write a chunk from a flat index on."""
@@ -65,6 +88,8 @@ class MemoryDatasetWriter:
             self._columns[name][chunk] = batch.numbers[name]
         self._columns["status"][chunk] = batch.status
         self._columns["reason"][chunk] = self._reasons.codes(batch)
+        for name, column in _further_columns(self._further, self._plan, start, batch).items():
+            self._columns[name][chunk] = column
 
     def dataset(self) -> "xr.Dataset":
         """Dataset of all chunks."""
@@ -72,7 +97,7 @@ class MemoryDatasetWriter:
 
         shape = self._plan.shape
         variables: dict[str, Any] = {
-            name: (_dimensions(self._plan), array.reshape(shape), _labels(name))
+            name: (_dimensions(self._plan), array.reshape(shape), _labels(name, self._further))
             for name, array in self._columns.items()
         }
         texts = np.array(list(self._reasons.code_of), dtype=np.str_)
@@ -88,14 +113,16 @@ class NetCDFDatasetWriter:
     plan : SweepPlan
     folder : Path
         Folder of the file.
+    further : FurtherColumns, optional
 
     See Also
     --------
     MemoryDatasetWriter
     """
 
-    def __init__(self, plan: SweepPlan, folder: Path) -> None:
+    def __init__(self, plan: SweepPlan, folder: Path, further: FurtherColumns | None = None) -> None:
         self._plan, self._path, self._reasons = plan, folder / "sweep.nc", _ReasonTable()
+        self._further = further
 
     def __enter__(self) -> Self:
         import h5netcdf
@@ -119,14 +146,15 @@ class NetCDFDatasetWriter:
         self._file.attrs.update(_attributes(self._plan))
         for name, (dimension, array, attributes) in _coordinates(self._plan).items():
             self._write_variable(name, (dimension,), array, attributes)
-        for name in (*NUMBERS, *_CODES):
-            variable = self._file.create_variable(name, _dimensions(self._plan), _CODES.get(name, np.float64))
-            variable.attrs.update(_labels(name))
+        kinds: dict[str, Any] = dict.fromkeys(NUMBERS, np.float64) | _CODES | _kinds(self._further)
+        for name, kind in kinds.items():
+            variable = self._file.create_variable(name, _dimensions(self._plan), kind)
+            variable.attrs.update(_labels(name, self._further))
 
     def write(self, start: int, batch: PointBatch) -> None:
         """Write a chunk from a flat index on."""
         codes: dict[str, NDArray[Any]] = {"status": batch.status, "reason": self._reasons.codes(batch)}
-        columns = {**batch.numbers, **codes}
+        columns = {**batch.numbers, **codes, **_further_columns(self._further, self._plan, start, batch)}
         try:
             for block, part in _blocks(self._plan.shape, start, start + batch.status.size):
                 for name, column in columns.items():
@@ -151,6 +179,13 @@ class NetCDFDatasetWriter:
         variable = self._file.create_variable(name, dims, kind)
         variable[...] = array.astype(object) if array.dtype.kind == "U" else array
         variable.attrs.update(attrs)
+
+
+def _further_columns(
+    further: FurtherColumns | None, plan: SweepPlan, start: int, batch: PointBatch
+) -> Mapping[str, NDArray[Any]]:
+    """Further columns of a chunk from a flat index on."""
+    return {} if further is None else further.of(plan.rows(start, start + batch.status.size), batch)
 
 
 def _blocks(shape: tuple[int, ...], start: int, stop: int) -> Iterator[tuple[tuple[slice, ...], slice]]:
@@ -201,12 +236,16 @@ def _attributes(plan: SweepPlan) -> dict[str, str]:
     attributes["assumptions"] = "\n".join(f"{key}: {reason}" for key, reason in assumed.items())
     if (rig := plan.own_rig()) is not None:
         attributes |= amplitude_labels(rig)
+        if "friction.model" not in plan.values:
+            attributes["friction_model"] = rig.friction_model.name
         attributes["caveats"] = "\n".join(operating_caveats(rig))
     return attributes
 
 
-def _labels(name: str) -> dict[str, Any]:
+def _labels(name: str, further: FurtherColumns | None = None) -> dict[str, Any]:
     """Attributes of a variable: unit and meaning from the vocabulary, or the meaning of codes."""
+    if further is not None and name in further.labels:
+        return dict(further.labels[name])
     if name == "status":
         flags = {"flag_values": np.arange(len(STATUSES), dtype=np.int8), "flag_meanings": " ".join(STATUSES)}
         return {"long_name": "Status of the point"} | flags

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sonolube.charts import Axis, Band, Chart, Field, Line, Panel, Part, Points, one_panel
 from sonolube.checks import Floats
+from sonolube.rig.figures import predicted_parts
 from sonolube.text.units import format_quantity
 from sonolube.vocabulary import quantities
 
@@ -130,11 +131,13 @@ def _curves(swept: "xr.Dataset", name: str) -> Chart:
     for outcome in known:
         values = swept[outcome].values
         scale, axis = scaled_axis(outcome, values)
-        part: Part = Line(x=x, y=scale * values, marker=_marker(x, 0))
+        beside = predicted_parts(swept, x) if outcome == _OUTCOME else ()
+        label = str(swept.attrs.get("friction_model", "friction model")) if beside else ""
+        part: Part = Line(x=x, y=scale * values, marker=_marker(x, 0), label=label)
         if _is_text(swept, name):
-            part = Points(x=x, y=scale * values)
+            part = Points(x=x, y=scale * values, label=label)
         y_axis = Axis(_LABELS[outcome], axis.unit)
-        panels.append(Panel(x=x_axis, y=y_axis, parts=(part,)))
+        panels.append(Panel(x=x_axis, y=y_axis, parts=(*beside, part)))
     columns = min(len(known), 2)
     unknown = ", ".join(_LABELS[each].lower() for each in others if each not in known)
     return Chart(
@@ -148,13 +151,23 @@ def _curves(swept: "xr.Dataset", name: str) -> Chart:
 def _family_of_curves(swept: "xr.Dataset", *, x_name: str, family: str) -> Chart:
     """Curves of the friction ratio over one key, one for each value of the other."""
     x, axis = _axis(swept, x_name)
-    ratio = swept[_OUTCOME].transpose(family, x_name).values
+    ratio, labels = swept[_OUTCOME].transpose(family, x_name).values, _value_labels(swept, family)
+    bands = [
+        part
+        for place in sorted({0, len(labels) - 1})
+        for part in predicted_parts(swept.isel({family: place}), x, colour=place, of=labels[place])
+    ]
     lines = tuple(
         Line(x=x, y=row, label=label, colour=place, dash=place, marker=_marker(x, place))
-        for place, (row, label) in enumerate(zip(ratio, _value_labels(swept, family), strict=True))
+        for place, (row, label) in enumerate(zip(ratio, labels, strict=True))
     )
     return one_panel(
-        axis, Axis(_OUTCOME_LABEL), lines, size=(5.6, 3.6), legend="right", legend_title=_axis(swept, family)[1].label
+        axis,
+        Axis(_OUTCOME_LABEL),
+        (*bands, *lines),
+        size=(5.6, 3.6),
+        legend="right",
+        legend_title=_axis(swept, family)[1].label,
     )
 
 

@@ -3,7 +3,7 @@
 import copy
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sonolube import __version__
-from sonolube.checks import require_finite, require_non_negative, require_positive
+from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.rig import NUMBERS, Rig, read_rig, rig_from
 from sonolube.rig.file.entries import set_entry
 from sonolube.rig.file.toml_file import number_keys
 
-OPERATING_CONDITIONS = {
+OPERATING_CONDITIONS: Mapping[str, Callable[..., Floats]] = {
     "contact.normal_load": require_positive,
     "drive.frequency": require_positive,
     "drive.voltage_offset": require_finite,

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, MissingProperty, SonolubeError
 from sonolube.models.thermal import EllipticSource, ThermalSolid, contact_rise
 from sonolube.prediction.bodies import named_bodies, softer_hardness
@@ -16,7 +18,14 @@ from sonolube.prediction.evidence_posterior import EvidencePosterior, population
 from sonolube.prediction.hierarchy import central_interval
 from sonolube.prediction.inputs import RigInputs, rig_inputs, within_plane_refusal
 from sonolube.prediction.predictive import DRAWS, ratio_draws
-from sonolube.prediction.within_plane import is_predicted, plane_caveats, plane_extrapolation, within_plane
+from sonolube.prediction.within_plane import (
+    is_predicted,
+    is_slower_than_tested,
+    plane_caveats,
+    plane_extrapolation,
+    tested_velocity_ratios,
+    within_plane,
+)
 from sonolube.rig import ResolvedRig, Rig, thermal_solid
 from sonolube.rig.contact_temperature import spot_rise
 from sonolube.rig.resolved_rig import resolved_rig
@@ -164,15 +173,27 @@ def _frequency(rig: Rig) -> tuple[str, ...]:
     """Caveat of a frequency beyond those of the published tests."""
     if rig.drive is None or not rig.direction.is_normal:  # Coulomb's law knows velocities alone
         return ()
-    tested = np.concatenate([each.at.conditions.frequency for each in published_rigs()])
-    low, high, own = float(tested.min()), float(tested.max()), rig.drive.frequency
-    if low / _MARGIN <= own <= high * _MARGIN:
+    low, high = _tested_frequencies()
+    own = rig.drive.frequency
+    if not _is_outside(own, low, high):
         return ()
     return (
         f"the frequency of {format_si(own, 'Hz')} is outside the {format_si(low, 'Hz')} to {format_si(high, 'Hz')} of"
         " the published tests: it enters by one scaling alone, the sliding speed over the peak speed of the vibration,"
         " v_r/(omega a)",
     )
+
+
+def _tested_frequencies() -> tuple[float, float]:
+    """Lowest and highest frequency of the published tests along the normal, in Hz."""
+    tested = np.concatenate([each.at.conditions.frequency for each in published_rigs()])
+    return float(tested.min()), float(tested.max())
+
+
+def _is_outside(values: ArrayLike, low: float, high: float) -> NDArray[np.bool_]:
+    """Whether values lie beyond the ends of a tested range by more than the margin."""
+    found = np.asarray(values, dtype=np.float64)
+    return ~((low / _MARGIN <= found) & (found <= high * _MARGIN))
 
 
 def extrapolation_caveats(rig: Rig, inputs: RigInputs) -> tuple[str, ...]:
@@ -200,38 +221,108 @@ def untested_conditions(rig: Rig, *, vibration_amplitude: float) -> tuple[str, .
     return tuple(
         f"{label} {format_si(value, unit)} ({format_si(low, unit)} to {format_si(high, unit)})"
         for label, value, unit, tested in _conditions(rig, vibration_amplitude)
-        for low, high in [(float(np.min(tested)), float(np.max(tested)))]
-        if not low / _MARGIN <= value <= high * _MARGIN
+        for low, high in [_ends(tested)]
+        if _is_outside(value, low, high)
     )
+
+
+def is_beyond_tests(
+    rig: Rig, *, vibration_amplitude: ArrayLike, frequency: ArrayLike | None, sliding_speed: ArrayLike
+) -> NDArray[np.bool_]:
+    """Whether operating points of a rig lie beyond the published tests, by the ranges that judge a single one.
+
+    Parameters
+    ----------
+    rig : Rig
+    vibration_amplitude : array_like
+        Zero to peak, of each point. [m]
+    frequency : array_like or None
+        Broadcast against `vibration_amplitude`; None where the rig has none. [Hz]
+    sliding_speed : array_like
+        Broadcast against `vibration_amplitude`. [m/s]
+
+    Returns
+    -------
+    ndarray of bool, shape of the broadcast arguments
+        True everywhere where the rig itself is unlike the tested ones.
+    """
+    f_given = np.nan if frequency is None else frequency
+    a, f, v = (np.asarray(each, dtype=np.float64) for each in (vibration_amplitude, f_given, sliding_speed))
+    a, f, v = np.broadcast_arrays(a, f, v)
+    if _of_the_rig_alone(rig):
+        return np.ones(a.shape, dtype=np.bool_)
+    if not rig.direction.is_normal:
+        known = (a > 0) & (v > 0) & np.isfinite(f)
+        found = np.zeros(a.shape, dtype=np.bool_)
+        if is_predicted(rig.direction) and np.any(known):
+            found[known] = is_slower_than_tested(_plane_conditions(rig, a[known], f[known], v[known]))
+        return found
+    found = _is_outside(rig.contact.pair.effective_modulus, *_ends(_tested_moduli()))
+    if frequency is not None:
+        found = found | _is_outside(f, *_tested_frequencies())
+    for values, name in ((a, "vibration_amplitude"), (v, "sliding_speed")):
+        found = found | _is_outside(values, *_ends(_tested(name)))
+    return np.broadcast_to(found, a.shape).copy()
+
+
+def _of_the_rig_alone(rig: Rig) -> bool:
+    """Whether a rig is unlike those of the published tests at any amplitude, frequency and speed."""
+    return bool(_in_plane(rig) or _soft(rig) or _crushed(rig) or _lubrication(rig, lubricant=False) or _roughness(rig))
+
+
+def tested_ranges_text(rig: Rig) -> str:
+    """Ranges of the published tests that a rig is held to, in words."""
+    if not rig.direction.is_normal:
+        return f"v_r/(omega a) down to {tested_velocity_ratios()[0]:.2g}"
+    ranges = (
+        ("amplitude", "m", _ends(_tested("vibration_amplitude"))),
+        ("sliding speed", "m/s", _ends(_tested("sliding_speed"))),
+        ("frequency", "Hz", _tested_frequencies()),
+    )
+    return ", ".join(f"{name} {format_si(low, unit)} to {format_si(high, unit)}" for name, unit, (low, high) in ranges)
 
 
 def _plane_range_caveats(rig: Rig, vibration_amplitude: float) -> tuple[str, ...]:
     """Sentence on conditions of a vibration within the plane outside the published points."""
     if rig.drive is None or not (rig.sliding_speed > 0 and is_predicted(rig.direction)):
         return ()
+    own = (np.array([each]) for each in (vibration_amplitude, rig.drive.frequency, rig.sliding_speed))
+    return plane_extrapolation(_plane_conditions(rig, *own))
+
+
+def _plane_conditions(rig: Rig, amplitude: Floats, frequency: Floats, speed: Floats) -> Conditions:
+    """Conditions of a rig that vibrates within the plane, each argument of shape (n,)."""
     conditions = Conditions(
-        vibration_amplitude=np.array([vibration_amplitude]),
-        frequency=np.array([rig.drive.frequency]),
-        sliding_speed=np.array([rig.sliding_speed]),
-        decay_length=np.array([REFERENCE_DECAY_LENGTH]),
+        vibration_amplitude=amplitude,
+        frequency=frequency,
+        sliding_speed=speed,
+        decay_length=np.full(amplitude.shape, REFERENCE_DECAY_LENGTH),
     )
-    return plane_extrapolation(within_plane(conditions, rig.direction))
+    return within_plane(conditions, rig.direction)
 
 
-def _conditions(rig: Rig, vibration_amplitude: float) -> list[tuple[str, float, str, np.ndarray]]:
+def _conditions(rig: Rig, vibration_amplitude: float) -> list[tuple[str, float, str, Floats]]:
     """Label, value, unit and tested values of each condition."""
-    tested = [each.at.conditions for each in published_rigs()]
-    moduli = [test.contact.pair.effective_modulus for test in friction_tests()]
     return [
-        (
-            "vibration amplitude",
-            vibration_amplitude,
-            "m",
-            np.concatenate([each.vibration_amplitude for each in tested]),
-        ),
-        ("sliding speed", rig.sliding_speed, "m/s", np.concatenate([each.sliding_speed for each in tested])),
-        ("effective modulus", rig.contact.pair.effective_modulus, "Pa", np.array(moduli)),
+        ("vibration amplitude", vibration_amplitude, "m", _tested("vibration_amplitude")),
+        ("sliding speed", rig.sliding_speed, "m/s", _tested("sliding_speed")),
+        ("effective modulus", rig.contact.pair.effective_modulus, "Pa", _tested_moduli()),
     ]
+
+
+def _tested(name: str) -> Floats:
+    """Values of a condition in all published tests along the normal."""
+    return np.concatenate([getattr(each.at.conditions, name) for each in published_rigs()])
+
+
+def _tested_moduli() -> Floats:
+    """Effective moduli of all published tests along the normal, in Pa."""
+    return np.array([test.contact.pair.effective_modulus for test in friction_tests()])
+
+
+def _ends(values: Floats) -> tuple[float, float]:
+    """Lowest and highest of some values."""
+    return float(np.min(values)), float(np.max(values))
 
 
 def contact_heating(rig: Rig, pin: str | None, disc: str | None) -> float | str:

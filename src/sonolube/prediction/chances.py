@@ -6,18 +6,23 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sonolube.checks import Floats
+from sonolube.checks import Floats, Integers
 from sonolube.errors import InvalidInput
 from sonolube.prediction.applicability import applicability
+from sonolube.prediction.evidence import Conditions
 from sonolube.prediction.evidence_posterior import EvidencePosterior, population_of
-from sonolube.prediction.inputs import RigInputs, own_runs, rig_inputs
+from sonolube.prediction.inputs import OwnRuns, RigInputs, own_runs, rig_inputs
 from sonolube.prediction.predictive import RigPrediction, rig_prediction
+from sonolube.prediction.rig_statement import contradiction_sentence, outlier_caveats
 from sonolube.rig import Rig
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _DRAWS: Final = 1000  # each of which has a distribution in closed form
+INTERVAL: Final = (0.1, 0.5, 0.9)
+"""Levels of the ends of the central 80 % interval, with the median between them."""
+
 _NEAR_A_TENTH: Final = 0.015
 _AT_ONCE: Final = 512  # conditions, to bound memory
 _AMPLITUDES: Final = 257  # among which the least one is sought
@@ -32,7 +37,7 @@ class ReductionChances:
     ----------
     inputs : RigInputs
     prediction : RigPrediction
-    runs : int
+    own : OwnRuns or None
         Own runs that the prediction rests on.
     caveats : tuple of str
         Own published tests that it was learned from too.
@@ -40,8 +45,23 @@ class ReductionChances:
 
     inputs: RigInputs
     prediction: RigPrediction
-    runs: int
+    own: OwnRuns | None = None
     caveats: tuple[str, ...] = ()
+
+    @property
+    def runs(self) -> int:
+        """Number of own runs that the prediction rests on."""
+        return 0 if self.own is None else self.own.tested.friction_ratio.size
+
+    @property
+    def contradiction(self) -> str:
+        """Sentence on own runs that contradict the prediction before them; empty where they do not."""
+        return "" if self.own is None else contradiction_sentence(self.prediction.check, self.own)
+
+    @property
+    def run_caveats(self) -> tuple[str, ...]:
+        """Sentences on own runs: what was taken from the rig, and which disagree with the others."""
+        return () if self.own is None else (*outlier_caveats(self.prediction.check, self.own), *self.own.caveats)
 
     def of(
         self,
@@ -67,18 +87,58 @@ class ReductionChances:
         ndarray, shape of the broadcast arguments
             0 without vibration. []
         """
+        settings = {"frequency": frequency, "sliding_speed": sliding_speed}
+        moving, found = self._moving(vibration_amplitude, **settings)
+        found[...] = np.where(np.isnan(found), np.nan, 0.0)
+        for rows, conditions in moving:
+            found.flat[rows] = self.prediction.chances(conditions, friction_ratio=1 - friction_reduction)
+        return found
+
+    def quantiles(
+        self,
+        levels: ArrayLike,
+        *,
+        vibration_amplitude: ArrayLike,
+        frequency: ArrayLike | None = None,
+        sliding_speed: ArrayLike | None = None,
+    ) -> Floats:
+        """Quantiles of the friction ratio at conditions.
+
+        Parameters
+        ----------
+        levels : array_like, shape (k,)
+            Between 0 and 1, such as 0.5 for the median.
+        vibration_amplitude : array_like
+            Zero to peak; NaN gives NaN. [m]
+        frequency, sliding_speed : array_like, broadcast against `vibration_amplitude`
+            Those of the rig by default. [Hz], [m/s]
+
+        Returns
+        -------
+        ndarray, shape of `levels` and of the broadcast arguments
+            1 without vibration. []
+        """
+        moving, still = self._moving(vibration_amplitude, frequency=frequency, sliding_speed=sliding_speed)
+        shares = np.asarray(levels, dtype=np.float64)
+        found = np.repeat(np.where(np.isnan(still), np.nan, 1.0).reshape(1, -1), shares.size, axis=0)
+        for rows, conditions in moving:
+            found[:, rows] = np.quantile(self.prediction.ratios(conditions), shares, axis=0)
+        return found.reshape(*shares.shape, *still.shape)
+
+    def _moving(
+        self, vibration_amplitude: ArrayLike, *, frequency: ArrayLike | None, sliding_speed: ArrayLike | None
+    ) -> tuple[list[tuple[Integers, Conditions]], Floats]:
+        """Flat places of vibrating points with conditions, a bounded number at once; and a copy of all amplitudes."""
         f = self.inputs.frequency if frequency is None else frequency
         v = self.inputs.sliding_speed if sliding_speed is None else sliding_speed
         a, f, v = np.broadcast_arrays(*(np.asarray(each, dtype=np.float64) for each in (vibration_amplitude, f, v)))
-        found = np.where(np.isnan(a), np.nan, 0.0)
         rows = np.flatnonzero(np.nan_to_num(a) > 0)
-        for part in np.array_split(rows, -(-rows.size // _AT_ONCE) or 1):
-            if part.size:
-                at = self.inputs.at(
-                    vibration_amplitude=a.flat[part], frequency=f.flat[part], sliding_speed=v.flat[part]
-                )
-                found.flat[part] = self.prediction.chances(at.conditions, friction_ratio=1 - friction_reduction)
-        return found
+        parts = [part for part in np.array_split(rows, -(-rows.size // _AT_ONCE) or 1) if part.size]
+        at = [
+            self.inputs.at(vibration_amplitude=a.flat[part], frequency=f.flat[part], sliding_speed=v.flat[part])
+            for part in parts
+        ]
+        return [(part, each.conditions) for part, each in zip(parts, at, strict=True)], a.copy()
 
     def over_grid(self, friction_reduction: float, vibration_amplitude: Floats, other: Floats, *, name: str) -> Floats:
         """Probabilities at very many points, between those of a grid over amplitude and frequency or sliding speed.
@@ -132,13 +192,13 @@ class ReductionChances:
         self, *, vibration_amplitude: float, frequency: float | None = None, sliding_speed: float | None = None
     ) -> tuple[float, float, float]:
         """Ends of the 80 % interval of the friction ratio, and its median between them, by `RigPrediction.ratios`."""
-        at = self.inputs.at(vibration_amplitude=vibration_amplitude, frequency=frequency, sliding_speed=sliding_speed)
-        low, middle, high = np.quantile(self.prediction.ratios(at.conditions)[:, 0], [0.1, 0.5, 0.9])
+        settings = {"frequency": frequency, "sliding_speed": sliding_speed}
+        low, middle, high = self.quantiles(INTERVAL, vibration_amplitude=vibration_amplitude, **settings)
         return float(low), float(middle), float(high)
 
 
 def reduction_chances(
-    rig: Rig, *, runs: "xr.Dataset | None" = None, evidence: EvidencePosterior | None = None
+    rig: Rig, *, runs: "xr.Dataset | None" = None, evidence: EvidencePosterior | None = None, draws: int = _DRAWS
 ) -> ReductionChances:
     """Chances that a rig reaches a reduction of friction.
 
@@ -149,6 +209,8 @@ def reduction_chances(
         Own measured runs over `run`, as `predict` takes them.
     evidence : EvidencePosterior, optional
         Posterior by own published tests too, in place of the shipped one.
+    draws : int
+        Equally probable outcomes.
 
     Returns
     -------
@@ -163,17 +225,13 @@ def reduction_chances(
     if limits.refusal:
         raise InvalidInput(limits.refusal)
     if limits.any_ratio and runs is None:
-        raise InvalidInput(f"{rig.title}: chances of a reduction need a dry contact, or runs of your own")
+        raise InvalidInput(f"{rig.title}: chances and intervals need a dry contact, or runs of your own")
     inputs = rig_inputs(rig, takes_plane=True)
     own = None if runs is None else own_runs(runs, inputs, title=rig.title)
     tested = None if own is None else own.tested
-    found = rig_prediction(population_of(inputs.direction, evidence), inputs.at(), count=_DRAWS, own=tested)
-    return ReductionChances(
-        inputs=inputs,
-        prediction=found,
-        runs=0 if tested is None else tested.friction_ratio.size,
-        caveats=() if evidence is None else evidence.caveats(inputs.direction),
-    )
+    found = rig_prediction(population_of(inputs.direction, evidence), inputs.at(), count=draws, own=tested)
+    caveats = () if evidence is None else evidence.caveats(inputs.direction)
+    return ReductionChances(inputs=inputs, prediction=found, own=own, caveats=caveats)
 
 
 def _nodes(logs: Floats, count: int) -> Floats:

@@ -104,10 +104,10 @@ def prediction_attributes(
     caveats += () if laboratory is None else laboratory.caveats
     caveats += () if evidence is None else evidence.caveats(rig.direction)
     if own is not None:
-        caveats += [*_outlier_caveats(found.check, own), *own.caveats]
+        caveats += [*outlier_caveats(found.check, own), *own.caveats]
         if own.wear_rate_ratio.size and not rig.direction.is_normal:
             caveats.append("the wear that the runs state is left out: no prediction of wear is of this direction")
-    contradiction = "" if own is None else _contradiction(found.check, own)
+    contradiction = "" if own is None else contradiction_sentence(found.check, own)
     verdict = point_verdict(rig, friction=point, lubricant=limits.any_ratio, contradiction=contradiction)
     attributes: dict[str, object] = {
         "result": "prediction",
@@ -199,7 +199,7 @@ def heat_words(
     )
 
 
-def _contradiction(check: RunCheck | None, own: OwnRuns) -> str:
+def contradiction_sentence(check: RunCheck | None, own: OwnRuns) -> str:
     """Sentence on runs that contradict the prediction before them; empty where they do not."""
     if check is None or not check.contradicted:
         return ""
@@ -214,7 +214,7 @@ def _contradiction(check: RunCheck | None, own: OwnRuns) -> str:
     )
 
 
-def _outlier_caveats(check: RunCheck | None, own: OwnRuns) -> list[str]:
+def outlier_caveats(check: RunCheck | None, own: OwnRuns) -> list[str]:
     """Sentence on each run that disagrees with the others."""
     if check is None:
         return []

@@ -32,7 +32,7 @@ from math import asin, hypot, pi, sin, sqrt
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats
 from sonolube.models.contact import ContactMotion
@@ -466,11 +466,18 @@ def _falls_with_speed(rig: TestedRig) -> bool:
 
 def plane_extrapolation(at: Conditions) -> tuple[str, ...]:
     """Sentence where the sliding is slower, against the vibration, than in any published point within the plane."""
+    if not is_slower_than_tested(at)[0]:
+        return ()
     plane = _plane(at)
     zeta, low = float(plane.velocity_ratio[0]) / _shape(plane.direction)[0], tested_velocity_ratios()[0]
-    if zeta >= low / 1.05:
-        return ()
     return (
         f"outside the range of the published points, so that the prediction extrapolates: v_r/(omega a) {zeta:.2g},"
         f" tested down to {low:.2g}",
     )
+
+
+def is_slower_than_tested(at: Conditions) -> NDArray[np.bool_]:
+    """Whether the sliding is slower, against the vibration, than in any published point, at each of m conditions."""
+    plane = _plane(at)
+    zeta = np.atleast_1d(plane.velocity_ratio) / _shape(plane.direction)[0]
+    return np.asarray(zeta < tested_velocity_ratios()[0] / 1.05)

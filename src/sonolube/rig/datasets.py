@@ -9,7 +9,7 @@ from io import BytesIO
 from math import isnan
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 
 Dataset: TypeAlias = "xr.Dataset"
 """Labelled dataset, by a name that needs no import of xarray."""
+
+PREDICTED_RATIO: Final = ("lowest_predicted_ratio", "predicted_friction_ratio", "highest_predicted_ratio")
+"""Variables over points that hold the predicted friction ratio: lower end of the 80 % interval, median, upper end."""
 
 _NOTHING: Mapping[str, str] = MappingProxyType({})
 _TEXTS = {

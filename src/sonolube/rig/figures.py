@@ -2,14 +2,14 @@
 
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from sonolube.charts import Axis, Bars, Chart, Field, Line, Panel, Part, Points, Rule, Zone
+from sonolube.charts import Axis, Band, Bars, Chart, Field, Line, Panel, Part, Points, Rule, Zone
 from sonolube.checks import Floats
 from sonolube.models.friction import LubricationMethod
-from sonolube.rig.datasets import Dataset
+from sonolube.rig.datasets import PREDICTED_RATIO, Dataset
 from sonolube.rig.operating_conditions import CommandedQuantity, quantity_of_axis
 from sonolube.rig.power import FiguredPower
 
@@ -190,7 +190,7 @@ def command_chart(study: Dataset) -> Chart:
         panels=(
             Panel(x=_PERIOD, y=_TIP, parts=tuple(motions)),
             Panel(x=_PERIOD, y=Axis(label="Normal contact force", unit="N"), parts=tuple(forces)),
-            Panel(x=quantity.axis, y=_RATIO, parts=(Line(x=across, y=study["friction_ratio"].values),)),
+            Panel(x=quantity.axis, y=_RATIO, parts=(*predicted_parts(study, across), _model_line(study, across))),
             Panel(x=quantity.axis, y=Axis(label="Vibration of the tip", unit="µm"), parts=vibration),
         ),
         size=(7.2, 5.6),
@@ -204,8 +204,9 @@ def speed_chart(study: Dataset) -> Chart:
         ("sliding_speed", Axis(label="Sliding speed", unit="m/s", logarithmic=True)),
         ("velocity_ratio", Axis(label="Sliding speed over peak vibration velocity", logarithmic=True)),
     )
-    panels = tuple(Panel(x=axis, y=_RATIO, parts=_family(study, name, "friction_ratio")) for name, axis in axes)
-    return Chart(panels=panels, size=(7.2, 3.4), columns=2, legend="top", legend_columns=6, shares_y=True)
+    title, columns = _family_title(study), _legend_columns(study)
+    panels = tuple(Panel(x=axis, y=_RATIO, parts=_ratio_family(study, name), title=title) for name, axis in axes)
+    return Chart(panels=panels, size=(7.2, 3.4), columns=2, legend="top", legend_columns=columns, shares_y=True)
 
 
 def frequency_chart(study: Dataset, *, power: FiguredPower = "power_to_supply") -> Chart:
@@ -215,7 +216,7 @@ def frequency_chart(study: Dataset, *, power: FiguredPower = "power_to_supply") 
         for curve in _curves(study)
         if (best := _best(curve["friction_ratio"].values)) is not None
     ]
-    over_power = _family(study, power, "friction_ratio")
+    over_power = _family(study, power, "friction_ratio")  # a curve that turns back, beside which no band stands
     if len(tips) > 1:
         x, y = np.array(tips).T
         over_power = (*over_power, Points(x=x, y=y, colour="0", is_hollow=True, label="tips"))
@@ -224,13 +225,13 @@ def frequency_chart(study: Dataset, *, power: FiguredPower = "power_to_supply") 
     return Chart(
         panels=(
             Panel(x=_FREQUENCY, y=amplitude, parts=_family(study, "frequency", "vibration_amplitude", 1e-3, 1e6)),
-            Panel(x=_FREQUENCY, y=_RATIO, parts=_family(study, "frequency", "friction_ratio", 1e-3)),
+            Panel(x=_FREQUENCY, y=_RATIO, parts=_ratio_family(study, "frequency", 1e-3), title=_family_title(study)),
             Panel(x=watts, y=_RATIO, parts=over_power),
         ),
         size=(6.85, 2.9),
         columns=3,
         legend="top",
-        legend_columns=6,
+        legend_columns=_legend_columns(study),
     )
 
 
@@ -266,7 +267,7 @@ def waveform_chart(study: Dataset) -> Chart:
         periods.append(Line(x=turns, y=1e6 * motion, dash=place, colour=place, label=name))
     ratios = study["friction_ratio"].values
     order = np.argsort(ratios)
-    bars = [
+    bars: list[Part] = [
         Bars(
             places=np.array([float(place)]),
             lengths=ratios[[each]],
@@ -276,6 +277,18 @@ def waveform_chart(study: Dataset) -> Chart:
         )
         for place, each in enumerate(order)
     ]
+    if PREDICTED_RATIO[0] in study:
+        low, median, high = (study[name].values[order] for name in PREDICTED_RATIO)
+        predicted = Points(
+            x=np.arange(order.size, dtype=np.float64),
+            y=median,
+            y_error=np.array([median - low, high - median]),
+            colour="0",
+            is_hollow=True,
+            label=f"{PREDICTED_LABEL}, and median",
+        )
+        bars.append(predicted)
+        ratios = np.concatenate([ratios, high])
     x = Axis(label="Waveform, all of the same swing", words=tuple(names[each] for each in order))
     y = Axis(label="Friction ratio", lowest=0.0, highest=1.1 * float(np.nanmax(ratios)))
     return Chart(
@@ -289,7 +302,8 @@ def load_chart(study: Dataset) -> Chart:
     """Friction reduction and, of a structure, the arm's natural frequency over normal load."""
     loads = study["normal_load"].values
     reduction = Axis(label="Friction reduction", unit="%", lowest=0.0, highest=100.0)
-    panels = [Panel(x=_LOAD, y=reduction, parts=(Line(x=loads, y=100 * study["friction_reduction"].values),))]
+    line = Line(x=loads, y=100 * study["friction_reduction"].values, label=_model_label(study))
+    panels = [Panel(x=_LOAD, y=reduction, parts=(*predicted_parts(study, loads, is_reduction=True), line))]
     if "natural_frequency" in study:
         arm = Axis(label="Natural frequency of the arm", unit="Hz")
         panels.append(Panel(x=_LOAD, y=arm, parts=(Line(x=loads, y=study["natural_frequency"].values, colour=1),)))
@@ -309,6 +323,76 @@ STUDY_CHARTS: Mapping[str, Callable[[Dataset], Chart]] = MappingProxyType(
     }
 )
 """Function that returns the chart of the dataset of each study."""
+
+
+PREDICTED_LABEL: Final = "predicted, 80 %"
+"""Label of the 80 % interval of the friction ratio by `sonolube predict`."""
+
+
+def predicted_parts(
+    points: Dataset, places: Floats, *, colour: int = 0, of: str = "", is_reduction: bool = False
+) -> tuple[Part, ...]:
+    """80 % interval and median of the predicted friction ratio along one axis; none where there is no prediction.
+
+    Parameters
+    ----------
+    points : xarray.Dataset
+        Over one axis, with the variables of `PREDICTED_RATIO`.
+    places : ndarray, shape (n,)
+        Along the axis of the figure.
+    colour : int
+        That of the curve of the friction model.
+    of : str
+        What the curve is of, where there are several.
+    is_reduction : bool
+        Whether the axis is of the friction reduction in percent.
+
+    Returns
+    -------
+    tuple of Part
+    """
+    if PREDICTED_RATIO[0] not in points:
+        return ()
+    low, median, high = (points[name].values for name in PREDICTED_RATIO)
+    if is_reduction:
+        low, median, high = (100 * (1 - each) for each in (high, median, low))
+    label = f"{PREDICTED_LABEL}{', ' if of else ''}{of}"
+    return (
+        Band(x=places, low=low, high=high, label=label, colour=colour, opacity=0.2),
+        Line(x=places, y=median, label="" if of else "predicted median", colour=colour, dash=3, weight=0.7),
+    )
+
+
+def _model_label(study: Dataset) -> str:
+    """Name of the friction model of a study beside a prediction; empty without one."""
+    return str(study.attrs.get("friction_model", "")) if PREDICTED_RATIO[0] in study else ""
+
+
+def _model_line(study: Dataset, places: Floats) -> Line:
+    """Friction ratio by the friction model along one axis."""
+    return Line(x=places, y=study["friction_ratio"].values, label=_model_label(study))
+
+
+def _family_title(study: Dataset) -> str:
+    """What the lines of a family of curves are beside a prediction; empty without one."""
+    model = _model_label(study)
+    return f"{model}; dotted: predicted median" if model else ""
+
+
+def _legend_columns(study: Dataset) -> int:
+    """Columns of a legend over the panels: fewer beside a prediction, whose labels are longer."""
+    return 3 if PREDICTED_RATIO[0] in study else 6
+
+
+def _ratio_family(study: Dataset, x: str, x_scale: float = 1.0) -> tuple[Part, ...]:
+    """Friction ratio for each voltage or amplitude of a study, with the prediction of the first and the last."""
+    quantity, levels = _level(study)
+    curves = _curves(study)
+    bands: list[Part] = []
+    for place in sorted({0, len(curves) - 1}):
+        of = quantity.text(float(levels[place])) if len(curves) > 1 else ""
+        bands += predicted_parts(curves[place], x_scale * curves[place][x].values, colour=place, of=of)
+    return (*bands, *_family(study, x, "friction_ratio", x_scale))
 
 
 def _level(study: Dataset) -> tuple[CommandedQuantity, Floats]:

@@ -73,6 +73,7 @@ def test_the_map_between_runs_is_drawn_with_the_runs_on_it(monkeypatch: pytest.M
     monkeypatch.setattr(names_of(module).results, "caption", lambda mapped, *, has_runs: f"with runs {has_runs}")
     mapped = SimpleNamespace(attrs={"map": "velocity-power"})
     given: dict[str, Any] = {"rig": SimpleNamespace(name="own"), "mapped": mapped, "forms": ("html", "png")}
+    given["predicted"] = None
     both = module.MapAnswer(**given, runs="runs", interpolated="between")  # type: ignore[arg-type]
     for figure in both.figures().values():
         assert figure.chart is not None

@@ -11,13 +11,17 @@ from sonolube.checks import Floats
 from sonolube.design import map_chart, map_kinds, map_page, measured_map_chart
 from sonolube.design.map_chances import chance_chart, chance_facts, chance_object, with_chances
 from sonolube.design.maps import default_axes
+from sonolube.design.predicted_results import with_verdicts
 from sonolube.design.runs_map import require_mappable, runs_map, runs_on_map
 from sonolube.errors import InvalidInput
 from sonolube.measurement.run_columns import runs_help
 from sonolube.models.friction.models.range_check import ratio_caveats
 from sonolube.prediction.chances import reduction_chances
+from sonolube.prediction.predicted_points import PredictedRig
+from sonolube.prediction.verdict import verdict_counts
 from sonolube.report import Drawing, Page
 from sonolube.report.results.design import friction_map as results
+from sonolube.report.results.design.predicted_points import verdict_lines
 from sonolube.report.results.rig_point import own_point_lines, own_point_object
 from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, commanded_quantity, operating_caveats
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
@@ -99,11 +103,14 @@ def map(  # noqa: A001 - the command's name
         mapped = design.MAPS[chosen](known, **axes)
     target, wanted = target_chance(target_reduction, confidence)
     learned_from: tuple[str, ...] = ()
+    chances = None
     if target is not None:
         with stage("chances"):
             chances = reduction_chances(known, runs=_with_amplitude(measured), evidence=learned)
             mapped = with_chances(mapped, chances, friction_reduction=target)
         learned_from = chances.caveats
+    predicted = PredictedRig(rig=known, chances=chances)
+    mapped = with_verdicts(mapped, predicted)
     left_out: tuple[str, ...] = ()
     if measured is not None:
         unused = target is not None and _with_amplitude(measured) is None
@@ -118,6 +125,7 @@ def map(  # noqa: A001 - the command's name
         left_out=left_out,
         confidence=wanted,
         learned_from=learned_from,
+        predicted=predicted,
     )
 
 
@@ -130,19 +138,21 @@ class MapAnswer(Answer):
     runs: "Dataset | None"
     interpolated: "Dataset | None"
     forms: tuple[str, ...]
+    predicted: PredictedRig
     left_out: tuple[str, ...] = ()
     confidence: float | None = None
     learned_from: tuple[str, ...] = ()
 
     def blocks(self) -> Sequence[Block]:
-        """Greatest reduction, ridge, chance of the target, and points without a result."""
+        """Verdicts, greatest reduction, ridge, chance of the target, and points without a result."""
         title, *rest = results.map_blocks(self.rig, self.mapped)
         chances = [Rows(self._chances)] if self._chances else []
-        return [title, *own_point_lines(self.rig), *rest, *chances]
+        return [title, *own_point_lines(self.rig), *verdict_lines(self.mapped), *rest, *chances]
 
     def object(self) -> dict[str, Any]:
         """Greatest reduction with the point where it occurs, and the number of points without a result."""
         found = results.map_object(self.rig, self.mapped) | own_point_object(self.rig)
+        found |= {"verdicts": verdict_counts(self.mapped["verdict"].values)}
         if not self._has_chances:
             return found
         return found | chance_object(self.mapped, confidence=self.confidence)
@@ -150,7 +160,9 @@ class MapAnswer(Answer):
     def caveats(self) -> Sequence[str]:
         """Caveats of the rig at its own point and of ratios on the map, runs without a place, and own evidence."""
         ratios = 1 - self.mapped["friction_reduction"].values
-        return (*operating_caveats(self.rig), *ratio_caveats(friction_ratio=ratios), *self.left_out, *self.learned_from)
+        tested = self.predicted.caveats(self.mapped["verdict"].values)
+        own = (*self.left_out, *self.learned_from)
+        return (*operating_caveats(self.rig), *ratio_caveats(friction_ratio=ratios), *tested, *own)
 
     def figures(self) -> Mapping[str, Drawing]:
         """Contours of the map, and those between the measured runs."""
@@ -184,7 +196,8 @@ class MapAnswer(Answer):
     def page(self) -> Page:
         """Page `map.html`."""
         page = results.map_page(self.rig, self.mapped, self.runs, self.interpolated)
-        return replace(page, facts=[*page.facts, *self._chances])
+        verdicts = [("points", line.strip()) for line in verdict_lines(self.mapped)]
+        return replace(page, facts=[*verdicts, *page.facts, *self._chances])
 
     @property
     def _has_chances(self) -> bool:

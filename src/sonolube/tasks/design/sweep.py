@@ -18,17 +18,27 @@ from sonolube.charts import Chart
 from sonolube.checks import Floats, require_positive
 from sonolube.design import SweepPlan, grid_plan, latin_hypercube_plan, list_plan, sweep_chart, swept_variables
 from sonolube.design.point_statistics import failure_counts
+from sonolube.design.predicted_results import PredictedColumns, with_predictions
+from sonolube.design.sweep_plan import OPERATING_CONDITIONS
 from sonolube.errors import InvalidInput
+from sonolube.measurement.run_columns import runs_help
 from sonolube.models.friction.models.range_check import ratio_caveats
+from sonolube.prediction.predicted_points import PredictedRig, predicted_rig
 from sonolube.report import Drawing, Page
 from sonolube.report.results.design import sweep as results
+from sonolube.report.results.design.predicted_points import (
+    predicted_blocks,
+    predicted_object,
+    predicted_tables,
+    verdict_lines,
+)
 from sonolube.report.results.record_object import amplitude_object, amplitude_rows, friction_model_text
 from sonolube.report.results.rig_point import own_point_lines, own_point_object
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.storage.files import expect_files
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
-from sonolube.tasks.own_tables import Values, ends_by_key, refuse_replaced, values_by_key
-from sonolube.tasks.parameters import Keep, KeyValues, Parameter, RigFile, Watched, kept, rig_of
+from sonolube.tasks.own_tables import MappedRuns, Values, ends_by_key, refuse_replaced, runs_of, values_by_key
+from sonolube.tasks.parameters import File, Keep, KeyValues, Parameter, RigFile, RunsSource, Watched, kept, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import refuse_unused, shown, task
 from sonolube.text.units import format_si, to_si
@@ -73,8 +83,12 @@ def parametric_study(
     points: int | None,
     voltages: Sequence[str],
     amplitudes: Sequence[str],
+    runs: "Dataset | None" = None,
 ) -> "ParametricStudyAnswer":
-    """Study of a rig over one quantity, whose range has ends with units; default ones where None."""
+    """Study of a rig over one quantity, whose range has ends with units; default ones where None.
+
+    `runs`: Own measured runs, on which the predicted friction ratio rests beside the published tests.
+    """
     _require_studied(rig, of)
     curves = _curves(rig, of, voltages, amplitudes)
     if of == "waveform":
@@ -91,7 +105,8 @@ def parametric_study(
         run = partial(getattr(rigs, usual.study), rig, **values, **curves, **own)
     with stage("sweeping") as advance:
         result = run(advance=lambda done, total: advance(of, done, total))
-    answer = ParametricStudyAnswer(rig=rig, of=of, study=result)
+    predicted = predicted_rig(rig, points=result["status"].size, runs=runs)
+    answer = ParametricStudyAnswer(rig=rig, of=of, study=with_predictions(result, predicted), predicted=predicted)
     if result["friction_ratio"].isnull().all():
         raise InvalidInput(f"no point has a result: {next(iter(answer.failures()))}")
     return answer
@@ -104,6 +119,7 @@ class ParametricStudyAnswer(Answer):
     rig: rigs.Rig
     of: str
     study: Dataset
+    predicted: PredictedRig
 
     def blocks(self) -> Sequence[Block]:
         """Main results over the quantity, and the points without a result."""
@@ -111,8 +127,10 @@ class ParametricStudyAnswer(Answer):
         return [
             f"{self.rig.title}, {load}, {points} points, {friction_model_text(self.rig)}",
             *own_point_lines(self.rig),
+            *verdict_lines(self.study),
             Rows([*amplitude_rows(self.rig), *results.rows(self.study, self.of)]),
             *[f"  without result: {count} of {points}: {reason}" for reason, count in self.failures().items()],
+            *predicted_blocks(self.study, self.predicted),
         ]
 
     def object(self) -> dict[str, Any]:
@@ -123,6 +141,7 @@ class ParametricStudyAnswer(Answer):
             "friction_model": self.rig.friction_model.name,
             **amplitude_object(self.rig),
             **own_point_object(self.rig),
+            **predicted_object(self.study, self.predicted),
             "least_friction": results.best_objects(self.study),
             "points": int(self.study["status"].size),
             "without_result": results.failure_objects(self.failures()),
@@ -133,8 +152,12 @@ class ParametricStudyAnswer(Answer):
         return f"{self.rig.name}-{self.of}"
 
     def caveats(self) -> Sequence[str]:
-        """Caveats of the rig at its own operating point."""
-        return (*rigs.operating_caveats(self.rig), *ratio_caveats(friction_ratio=self.study["friction_ratio"].values))
+        """Caveats of the rig at its own operating point, of ratios, and of the prediction."""
+        return (
+            *rigs.operating_caveats(self.rig),
+            *ratio_caveats(friction_ratio=self.study["friction_ratio"].values),
+            *self.predicted.caveats(self.study["verdict"].values),
+        )
 
     def figures(self) -> Mapping[str, Drawing]:
         """Figure of the study."""
@@ -227,12 +250,18 @@ _OVER = KeyValues(
     " first:last alone for the sample lhs. May come again.",
     "KEY=VALUES",
 )
+_RUNS = File(
+    runs_help("Own measured runs, on which the predicted friction ratio rests beside the published tests. Columns"),
+    "RUNS.csv",
+    option="--runs --measured",
+)
 _CAPTIONS = {1: "Results of the rig over the key that was swept.", 2: "Friction over both keys that were swept."}
 _CLOUD_CAPTION = (
     "Friction over each key that was swept, at all values of the others: points, at most 3000 of them, their median,"
     " and the interval of 90 %."
 )
 # arguments without meaning for one quantity
+_PREDICTED_KEYS = (*OPERATING_CONDITIONS, rigs.AMPLITUDE.key)  # along which a prediction of the rig holds
 _OVER_ONLY = ("sample", "seed", "workers", "scheduler", "chunk")
 _FILES = ("sweep.nc", "sweep.json", "sweep.html", "sweep.png", "sweep.svg", "sweep.pdf")
 _OF_ONLY = ("lowest", "highest", "voltage", "vibration")  # arguments without meaning for keys
@@ -269,6 +298,8 @@ def sweep(
         str | None, Parameter("Dask scheduler, or local for processes on this machine.", "ADDRESS")
     ] = None,
     chunk: Annotated[int, Parameter("Points computed and kept together.", lowest=1)] = 100_000,
+    runs: Annotated[RunsSource, _RUNS] = None,
+    mapping: MappedRuns = None,
     keep: Keep = None,
     **watch: Unpack[Watched],
 ) -> "SweepAnswer | ParametricStudyAnswer":
@@ -284,6 +315,7 @@ def sweep(
     [0.66, 0.35]
     """
     known = rig_of(rig)
+    measured = runs_of(runs, mapping)
     if (of is None) == (not over):
         raise InvalidInput(
             f"needs either {shown('over')}, keys with their values, or {shown('of')}, one quantity over its usual range"
@@ -293,7 +325,14 @@ def sweep(
         if (place := kept(keep, "")) is not None:
             expect_files(place, (f"{escape(known.name)}-{of}.*",))
         return parametric_study(
-            known, of=of, lowest=lowest, highest=highest, points=points, voltages=voltage, amplitudes=vibration
+            known,
+            of=of,
+            lowest=lowest,
+            highest=highest,
+            points=points,
+            voltages=voltage,
+            amplitudes=vibration,
+            runs=measured,
         )
     refuse_unused(*_OF_ONLY, because=f"for {shown('over')}")
     refuse_replaced(known, over or {})
@@ -305,6 +344,7 @@ def sweep(
     folder = kept(keep, f"{known.name}-sweep-{plan.digest[:8]}")
     if folder is not None:
         expect_files(folder, _FILES)
+    predicted = _predicted(plan, known, measured)
     with stage("sweeping") as advance:
         result = design.sweep(
             plan,
@@ -313,8 +353,23 @@ def sweep(
             chunk_points=chunk,
             workers=workers,
             scheduler=scheduler,
+            further=None if isinstance(predicted, str) else PredictedColumns(predicted),
         )
-    return SweepAnswer(rig=known, plan=plan, result=result, folder=folder)
+    return SweepAnswer(rig=known, plan=plan, result=result, folder=folder, predicted=predicted)
+
+
+def _predicted(plan: SweepPlan, rig: rigs.Rig, runs: "Dataset | None") -> PredictedRig | str:
+    """Prediction of the rig of a sweep; why there is none where its points are of other rigs."""
+    others = [key for key in plan.values if key not in _PREDICTED_KEYS]
+    if not others:
+        return predicted_rig(rig, points=plan.points, runs=runs)
+    reason = (
+        f"{others[0]} changes the rig, and a prediction is of one rig at other"
+        f" {', '.join(key.rpartition('.')[2].replace('_', ' ') for key in _PREDICTED_KEYS)}"
+    )
+    if runs is not None:
+        raise InvalidInput(f"{shown('runs')} has no meaning here: {reason}")
+    return reason
 
 
 @answer
@@ -325,19 +380,29 @@ class SweepAnswer(Answer):
     plan: SweepPlan
     result: Dataset
     folder: Path | None
+    predicted: PredictedRig | str
 
     def blocks(self) -> Sequence[Block]:
         """Number of points by status, failures, and the point of least friction."""
         title, *rest = results.sweep_blocks(self.rig, self.plan, self.result)
-        return [title, *own_point_lines(self.rig), *rest]
+        if isinstance(self.predicted, str):
+            return [title, *own_point_lines(self.rig), *rest, f"  not predicted: {self.predicted}"]
+        leading = [*own_point_lines(self.rig), *verdict_lines(self.result)]
+        return [title, *leading, *rest, *predicted_blocks(self.result, self.predicted)]
 
     def object(self) -> dict[str, Any]:
-        """Number of points by status, failures, and the point of least friction."""
-        return results.sweep_object(self.rig, self.plan, self.result) | own_point_object(self.rig)
+        """Number of points by status and by verdict, failures, and the point of least friction."""
+        found = results.sweep_object(self.rig, self.plan, self.result) | own_point_object(self.rig)
+        if isinstance(self.predicted, str):
+            return found | {"prediction": {"runs": 0, "reason": self.predicted}}
+        return found | predicted_object(self.result, self.predicted)
 
     def caveats(self) -> Sequence[str]:
         """Caveats of the rig at its own operating point, and the meaning of ratios below 0 and above 1."""
-        return (*rigs.operating_caveats(self.rig), *ratio_caveats(friction_ratio=self.result["friction_ratio"].values))
+        own = (*rigs.operating_caveats(self.rig), *ratio_caveats(friction_ratio=self.result["friction_ratio"].values))
+        if isinstance(self.predicted, str):
+            return own
+        return (*own, *self.predicted.caveats(self.result["verdict"].values))
 
     def figures(self) -> Mapping[str, Drawing]:
         """Friction over the keys that were swept."""
@@ -351,7 +416,10 @@ class SweepAnswer(Answer):
 
     def page(self) -> Page:
         """Page `sweep.html`."""
-        return results.sweep_page(self.rig, self.plan, self.result)
+        page = results.sweep_page(self.rig, self.plan, self.result)
+        if isinstance(self.predicted, str):
+            return page
+        return replace(page, tables=[*page.tables, *predicted_tables(self.result, self.predicted)])
 
 
 def _plan(rig: rigs.Rig, over: Values, sample: str, points: int | None, seed: int) -> SweepPlan:

@@ -9,8 +9,10 @@ from sonolube.design import SweepPlan
 from sonolube.design.point_statistics import extreme_place, extreme_point, failure_counts, status_counts
 from sonolube.report.blocks import Block, Rows
 from sonolube.report.page import Page, PageTable
+from sonolube.report.results.design.predicted_points import point_object, predicted_text
 from sonolube.report.results.record_object import amplitude_object, amplitude_rows
 from sonolube.rig import Rig, power_to_supply, quantity_of_axis
+from sonolube.rig.datasets import PREDICTED_RATIO
 from sonolube.rig.driven_rig import NO_DISSIPATED_POWER
 from sonolube.rig.power import POWERS, PowerToSupply, with_former_key
 from sonolube.text.units import format_quantity, format_si
@@ -29,7 +31,8 @@ def _level_rows(study: "xr.Dataset") -> Named:
     """Least friction, voltage or amplitude at which contact is lost, and the highest power to supply where known."""
     quantity = quantity_of_axis(study.dims)
     for best in _best_points(study):
-        yield "least friction", f"ratio {_text(best, 'friction_ratio')} at {_text(best, quantity.name)}"
+        at = f"ratio {_text(best, 'friction_ratio')} at {_text(best, quantity.name)}"
+        yield "least friction", f"{at}{_predicted(best)}"
     lost = study[quantity.name].values[study["contact_loss_fraction"].values > 0]
     yield "contact is lost", f"from {format_si(float(lost.min()), quantity.unit)}" if lost.size else "nowhere"
     highest = extreme_point(study, outcome="power_to_supply", highest=True) if "power_to_supply" in study else None
@@ -51,7 +54,7 @@ def _frequency_rows(study: "xr.Dataset") -> Named:
     """Least friction at each voltage."""
     for best in _best_points(study):
         at = f"{_text(best, 'frequency', digits=4)}, {_text(best, 'vibration_amplitude')}"
-        text = f"least friction ratio {_text(best, 'friction_ratio')} at {at}, {_supplied(best)}"
+        text = f"least friction ratio {_text(best, 'friction_ratio')} at {at}, {_supplied(best)}{_predicted(best)}"
         yield f"at {_text(best, 'voltage_peak_to_peak')}", text
 
 
@@ -69,8 +72,14 @@ def _waveform_rows(study: "xr.Dataset") -> Named:
     """Friction ratio of each waveform, the least first."""
     for index in study["friction_ratio"].values.argsort():
         one = study.isel(waveform=int(index))
-        text = f"ratio {_text(one, 'friction_ratio')}, {_text(one, 'vibration_amplitude')}"
+        text = f"ratio {_text(one, 'friction_ratio')}, {_text(one, 'vibration_amplitude')}{_predicted(one)}"
         yield str(one["waveform"].values), text
+
+
+def _predicted(point: "xr.Dataset") -> str:
+    """Predicted friction ratio of a point, behind that of the friction model; empty without a prediction."""
+    text = predicted_text(point)
+    return f"; predicted {text}" if text else ""
 
 
 def _load_rows(study: "xr.Dataset") -> Named:
@@ -158,6 +167,7 @@ def _point_object(point: "xr.Dataset") -> dict[str, Any]:
         | si(with_former_key({name: float(point[name]) for name in names if name != "waveform"}))
         | ({} if balance is None else {"energy_balance": balance})
         | bound
+        | point_object(point)
     )
 
 
@@ -248,7 +258,8 @@ def _failures(result: "xr.Dataset") -> dict[str, int]:
 def _least(plan: SweepPlan, result: "xr.Dataset") -> dict[str, Any]:
     """Values of the swept keys and outcomes at the point of least friction; empty where no point has a result."""
     place = extreme_place(result, outcome="friction_ratio")
-    point = extreme_point(result[list(OUTCOMES)], outcome="friction_ratio")
+    names = [name for name in (*OUTCOMES, *PREDICTED_RATIO, "verdict") if name in result]
+    point = extreme_point(result[names], outcome="friction_ratio")
     if place is None or point is None:
         return {}
     swept = {key: values[0].item() for key, values in plan.rows(place, place + 1).items()}
@@ -258,6 +269,7 @@ def _least(plan: SweepPlan, result: "xr.Dataset") -> dict[str, Any]:
         | si(with_former_key({name: float(point[name]) for name in OUTCOMES if np.isfinite(point[name])}))
         | ({} if balance is None else {"energy_balance": balance})
         | bound
+        | point_object(point)
     )
 
 
@@ -265,8 +277,14 @@ def _least_texts(plan: SweepPlan, result: "xr.Dataset") -> list[tuple[str, str]]
     """The same as text, "at least" before a lower bound."""
     least = _least(plan, result)
     bounds = least.pop("at_least", ())
+    least.pop("verdict", None)
+    predicted = least.pop("predicted_friction_ratio", None)
     texts = {name: _as_text(name, value) for name, value in least.items() if name != _FORMER}
-    return [(_LABELS.get(name, name), f"at least {text}" if name in bounds else text) for name, text in texts.items()]
+    rows = [(_LABELS.get(name, name), f"at least {text}" if name in bounds else text) for name, text in texts.items()]
+    if predicted is None:
+        return rows
+    low, high = predicted["interval_80"]
+    return [*rows, ("predicted ratio", f"{predicted['median']:.2g}, {low:.2g} to {high:.2g} (80 %)")]
 
 
 def _as_text(name: str, value: Any) -> str:
