@@ -532,9 +532,14 @@ MODES = {
             "--quality": "100",
             "--coupling": "0.3",
             "--duration": "0.06s",
+            "--tuned-for": "worst",
+            **MEASURED,
             **VIBRATED,
         },
         ("--no-track", "--stick-slip"),
+    ),
+    "control beside own runs": Mode(
+        "control", (RIG, "--duration", "0.05s", "--runs", OWN_RUNS), {"--mapping": "FOLDER/halved.toml"}
     ),
     "control in the warm": Mode(
         "control", (RIG, "--duration", "0.05s", "--warming", "40K"), {"--warming-time": "0.01s"}, ("--no-track",)

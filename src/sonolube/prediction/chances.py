@@ -11,7 +11,7 @@ from sonolube.errors import InvalidInput
 from sonolube.prediction.applicability import applicability
 from sonolube.prediction.evidence import Conditions
 from sonolube.prediction.evidence_posterior import EvidencePosterior, population_of
-from sonolube.prediction.inputs import OwnRuns, RigInputs, own_runs, rig_inputs
+from sonolube.prediction.inputs import Input, OwnRuns, RigInputs, intrinsic_draws, own_runs, rig_inputs
 from sonolube.prediction.predictive import RigPrediction, rig_prediction
 from sonolube.prediction.rig_statement import contradiction_sentence, outlier_caveats
 from sonolube.rig import Rig
@@ -124,6 +124,34 @@ class ReductionChances:
         for rows, conditions in moving:
             found[:, rows] = np.quantile(self.prediction.ratios(conditions), shares, axis=0)
         return found.reshape(*shares.shape, *still.shape)
+
+    def draws(self, *, vibration_amplitude: ArrayLike) -> Floats:
+        """Equally probable friction ratios along a curve of amplitudes.
+
+        Parameters
+        ----------
+        vibration_amplitude : array_like, shape (m,)
+            Zero to peak. [m]
+
+        Returns
+        -------
+        ndarray, shape (draws, m)
+            A rig a row, 1 without vibration. []
+        """
+        moving, still = self._moving(vibration_amplitude, frequency=None, sliding_speed=None)
+        found = np.ones((self.prediction.count, still.size))
+        for rows, conditions in moving:
+            found[:, rows] = self.prediction.ratios(conditions)
+        return found
+
+    @property
+    def friction(self) -> Input:
+        """Coefficient of friction without vibration: by own runs where they have forces, else that of the rig."""
+        return self.inputs.friction if self.own is None or self.own.friction is None else self.own.friction
+
+    def intrinsic_coefficients(self) -> Floats:
+        """Equally probable coefficients of friction without vibration."""
+        return intrinsic_draws(self.friction, count=self.prediction.count)
 
     def _moving(
         self, vibration_amplitude: ArrayLike, *, frequency: ArrayLike | None, sliding_speed: ArrayLike | None

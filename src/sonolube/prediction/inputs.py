@@ -274,6 +274,12 @@ def _friction(rig: Rig) -> Input:
     )
 
 
+def intrinsic_draws(friction: Input, *, count: int, seed: int = 0) -> Floats:
+    """Draws of the coefficient of friction without vibration, shape (count,)."""
+    normals = np.random.default_rng(seed + 1).standard_normal(count)
+    return np.asarray(friction.value * np.exp(friction.spread * normals))
+
+
 def _lognormal(distribution: Distribution) -> tuple[float, float]:
     """Median of a distribution of a positive quantity, and the standard deviation of the like lognormal one."""
     low, middle, high = (float(each) for each in distribution.quantile((0.1587, 0.5, 0.8413)))

@@ -27,7 +27,7 @@ from sonolube.prediction.further_measurements import (
     told_probes,
 )
 from sonolube.prediction.hierarchy import LEVELS, sorted_quantiles
-from sonolube.prediction.inputs import Input, OwnRuns, RigInputs, decay_length_of, own_runs, rig_inputs
+from sonolube.prediction.inputs import Input, OwnRuns, RigInputs, decay_length_of, intrinsic_draws, own_runs, rig_inputs
 from sonolube.prediction.posterior import Posterior, learned
 from sonolube.prediction.predictive import DRAWS, Laboratory, RigPrediction, laboratory, rig_prediction
 from sonolube.prediction.rig_statement import heat_words, prediction_attributes, statement, wear_sentence
@@ -164,7 +164,7 @@ class LivePrediction:
             "speed": self._ratios(found, inputs, unknown=unknown, sliding_speed=speeds),
         }
         ratio = curves["amplitude"][:, _CURVE // 2]
-        intrinsic = self._intrinsic(inputs.friction)
+        intrinsic = intrinsic_draws(inputs.friction, count=self._draws, seed=self._seed)
         drawn = _frictional(ratio, intrinsic, rig, heating)
         wear_is_known = inputs.direction.is_normal and not (limits.any_ratio and not _states_wear(own))
         if wear_is_known:
@@ -234,11 +234,6 @@ class LivePrediction:
             return found.ratios(inputs.at(**along).conditions)
         even = (np.random.default_rng(self._seed).permutation(self._draws) + 0.5) / self._draws
         return np.broadcast_to(even[:, None], (self._draws, _CURVE))
-
-    def _intrinsic(self, friction: Input) -> Floats:
-        """Draws of the coefficient of friction without vibration."""
-        normals = np.random.default_rng(self._seed + 1).standard_normal(self._draws)
-        return np.asarray(friction.value * np.exp(friction.spread * normals))
 
     def _wear(self, rig: Rig, found: RigPrediction, own: OwnRuns | None, inputs: RigInputs) -> dict[str, Floats]:
         """Draws of the wear rate ratio and reduction, by the reduction that the friction model itself gives."""

@@ -65,3 +65,49 @@ def test_arguments_are_refused_by_their_names(rigs: Path) -> None:
             control(path, **arguments)
     with raises(UnknownName, match="unknown feed_forward 'modell'; did you mean model"):
         control(path, feed_forward="modell")  # type: ignore[arg-type]
+
+
+def test_the_prediction_gives_reach_chance_and_margins_and_a_tuning_for_the_worst(rigs: Path) -> None:
+    path = rigs / "tribometer.toml"
+    usual, worst = (control(path, duration="40ms", tuned_for=each) for each in ("model", "worst"))
+    found = usual.json_object()
+    low, high = found["predicted_least_friction"]["interval_80"]
+    assert low < found["predicted_least_friction"]["median"] < high
+    assert 0 < found["target_chance"] < 1
+    assert found["worst_of_80"]["gain_margin"]["value"] == approx(found["gain_margin"]["value"], rel=1e-3)
+    slower = found["worst_of_80"]["closed_loop_time"]["value"]
+    assert worst.settings.closed_loop_time == approx(slower)
+    held = worst.json_object()["predicted_margins"]["gain_margin"]["interval_80"][0]
+    assert held == approx(found["gain_margin"]["value"], rel=1e-3)
+    assert worst.study.controller.gains.proportional_gain < usual.study.controller.gains.proportional_gain
+    assert any("real friction may change" in line for line in usual.caveats())
+    assert not any("real friction may change" in line for line in worst.caveats())
+    chart = usual.figures()["tribometer-control-design"].chart()  # type: ignore[misc]
+    assert "predicted, 80 %" in [getattr(part, "label", "") for part in chart.panels[0].parts]
+
+
+def test_own_runs_narrow_reach_and_gain_and_a_feed_forward_by_the_prediction_has_its_median(rigs: Path) -> None:
+    path, runs = rigs / "tribometer.toml", rigs.parent / "tribometer-runs.csv"
+    before, after = (control(path, duration="40ms", runs=each).json_object() for each in (None, runs))
+    assert after["prediction"]["runs"] > 0
+    for name in ("predicted_least_friction", "predicted_gain"):
+        width = [float(np.ptp(each[name]["interval_80"])) for each in (before, after)]
+        assert width[1] < 0.5 * width[0]
+    fed = control(path, duration="40ms", feed_forward="prediction", runs=runs)
+    assert not isinstance(fed.posterior, str)
+    assert fed.study.controller.intrinsic_friction_force - fed.study.controller.force_reduction[-1] == approx(
+        fed.posterior.reach[1], rel=0.03
+    )
+    assert fed.posterior.gain is not None
+    assert fed.posterior.gain[1] == approx(1.0, abs=0.2)
+
+
+def test_a_rig_without_a_prediction_has_its_controller_and_a_reason_and_no_tuning_for_the_worst(rigs: Path) -> None:
+    path = rigs / "pom_on_steel.toml"
+    found = control(path, duration="40ms")
+    assert "soft or floating contact" in found.json_object()["prediction"]["reason"]
+    assert found.json_object()["gain_margin"]["value"] == approx(3.13, abs=0.01)
+    with raises(InvalidInput, match="soft or floating contact"):
+        control(path, duration="40ms", tuned_for="worst")
+    with raises(InvalidInput, match="soft or floating contact"):
+        control(path, duration="40ms", feed_forward="prediction")

@@ -27,12 +27,19 @@ from .friction_characteristic import (
     friction_at_level as friction_at_level,
     level_for_friction as level_for_friction,
     linear_characteristic as linear_characteristic,
+    predicted_characteristic as predicted_characteristic,
 )
 from .performance import (
     ControlEnergy as ControlEnergy,
     StepResponseMetrics as StepResponseMetrics,
     control_energy as control_energy,
     step_response_metrics as step_response_metrics,
+)
+from .posterior_loop import (
+    CautiousTuning as CautiousTuning,
+    PosteriorLoop as PosteriorLoop,
+    margins_at_gain as margins_at_gain,
+    posterior_loop as posterior_loop,
 )
 from .process import (
     PIGains as PIGains,

@@ -20,6 +20,7 @@ from sonolube.design.control.friction_characteristic import (
     efficiency_characteristic,
     friction_at_level,
     level_for_friction,
+    predicted_characteristic,
 )
 from sonolube.design.control.performance import (
     ControlEnergy,
@@ -38,13 +39,14 @@ from sonolube.design.control.resonance_tracking import (
 from sonolube.design.control.vibration_envelope import VibrationMode, mode_admittance, mode_at_drive
 from sonolube.errors import InvalidInput, OutsideRange, UnknownName
 from sonolube.facts.metrics import EfficiencyLine
+from sonolube.prediction.chances import ReductionChances
 from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, commanded_quantity, dataset, own_level
 
 if TYPE_CHECKING:
     import xarray as xr
 
-FEED_FORWARD = ("model", "efficiency", "none")
-"""Characteristic of the feed-forward: by the rig's model, by an efficiency line, or none but a straight line."""
+FEED_FORWARD = ("model", "prediction", "efficiency", "none")
+"""Characteristic of the feed-forward: by the rig's model, predicted median, efficiency line, or a straight line."""
 
 _SLOPE_STEP = 0.01  # of the highest level, of the finite difference of the static gain
 _FIRST_STEP, _SECOND_STEP = 0.1, 0.55  # of the duration, when the set-point steps
@@ -167,7 +169,12 @@ class ControlDesign:
 
 
 def design_control(
-    rig: Rig, settings: ControlSettings, *, mode: VibrationMode | None = None, line: EfficiencyLine | None = None
+    rig: Rig,
+    settings: ControlSettings,
+    *,
+    mode: VibrationMode | None = None,
+    line: EfficiencyLine | None = None,
+    chances: ReductionChances | None = None,
 ) -> ControlDesign:
     """Friction controller tuned for a rig by the SIMC rule, its margins, and a simulation of its closed loop.
 
@@ -181,6 +188,8 @@ def design_control(
         rig without a voltage `amplitude_mode`.
     line : EfficiencyLine, optional
         Efficiency line for the feed-forward "efficiency".
+    chances : ReductionChances, optional
+        Distribution of the rig's friction ratio for the feed-forward "prediction".
 
     Returns
     -------
@@ -209,7 +218,7 @@ def design_control(
         target = 0.5 * (plant.highest_force + plant.lowest_force)
     level_for_friction(plant, friction_force=target)  # refuses a target out of reach
     controller = tuned_controller(
-        _feed_forward_characteristic(rig, plant, settings, line, highest),
+        _feed_forward_characteristic(rig, plant, settings, line, chances, highest),
         Process(
             time_constant=mode.time_constant, dead_time=settings.dead_time, sample_interval=settings.sample_interval
         ),
@@ -270,9 +279,18 @@ def _highest_level(rig: Rig, settings: ControlSettings, mode: VibrationMode) -> 
 
 
 def _feed_forward_characteristic(
-    rig: Rig, plant: FrictionCharacteristic, settings: ControlSettings, line: EfficiencyLine | None, swing: float
+    rig: Rig,
+    plant: FrictionCharacteristic,
+    settings: ControlSettings,
+    line: EfficiencyLine | None,
+    chances: ReductionChances | None,
+    swing: float,
 ) -> FrictionCharacteristic:
     """Characteristic whose inverse the controller uses."""
+    if settings.feed_forward == "prediction":
+        if chances is None:
+            raise InvalidInput("feed-forward by prediction needs a distribution of the friction ratio")
+        return predicted_characteristic(rig, plant, chances)
     if settings.feed_forward != "efficiency":
         return plant
     if line is None:

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats, require_non_negative
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.facts.metrics import EfficiencyLine, friction_at_power, power_for_friction
+from sonolube.prediction.chances import ReductionChances
 from sonolube.rig import VOLTAGE, CommandedQuantity, Rig, commanded_quantity, level_settings, operating_points
 from sonolube.rig.driven_rig import DriveVoltage, require_drive
 from sonolube.text.units import format_si
@@ -27,6 +28,8 @@ class FrictionCharacteristic:
         Mean friction force at each, decreasing. [N]
     quantity : CommandedQuantity
         Voltage or amplitude.
+    vibration_amplitude : ndarray, shape (n,), or None
+        Amplitude at each, where it is known. [m]
 
     Raises
     ------
@@ -35,12 +38,13 @@ class FrictionCharacteristic:
 
     See Also
     --------
-    computed_characteristic, efficiency_characteristic, linear_characteristic
+    computed_characteristic, predicted_characteristic, efficiency_characteristic, linear_characteristic
     """
 
     level: Floats
     friction_force: Floats
     quantity: CommandedQuantity = VOLTAGE
+    vibration_amplitude: Floats | None = None
 
     def __post_init__(self) -> None:
         levels = require_non_negative(**{self.quantity.name: self.level})
@@ -149,8 +153,69 @@ def computed_characteristic(rig: Rig, *, level_maximum: float, points: int = 41)
     """
     quantity = commanded_quantity(rig)
     levels = _levels(quantity, level_maximum, points)
-    force = _ratios(rig, levels) * rig.friction_coefficient * rig.normal_load
-    return _decreasing_part(rig, quantity, levels, force)
+    vibrated = operating_points(rig, **level_settings(rig, levels[1:]))
+    force = np.append(1.0, vibrated.friction_ratio) * rig.friction_coefficient * rig.normal_load
+    amplitude = np.append(0.0, vibrated.vibration_amplitude)
+    return _decreasing_part(rig, quantity, levels, force, amplitude=amplitude)
+
+
+def drawn_forces(rig: Rig, plant: FrictionCharacteristic, chances: ReductionChances) -> Floats:
+    """Friction forces of equally probable rigs at the levels of a characteristic, as `predict` has them, in N.
+
+    Parameters
+    ----------
+    rig : Rig
+    plant : FrictionCharacteristic
+        By `computed_characteristic`.
+    chances : ReductionChances
+        Of the rig.
+
+    Returns
+    -------
+    ndarray, shape (draws, n)
+
+    Raises
+    ------
+    InvalidInput
+        If the amplitude along the characteristic is not known.
+    """
+    if plant.vibration_amplitude is None:
+        raise InvalidInput(f"{rig.title}: the amplitude along the friction characteristic is not known")
+    ratio = chances.draws(vibration_amplitude=plant.vibration_amplitude)
+    return np.asarray(ratio * chances.intrinsic_coefficients()[:, None] * rig.normal_load)
+
+
+def predicted_characteristic(
+    rig: Rig, plant: FrictionCharacteristic, chances: ReductionChances
+) -> FrictionCharacteristic:
+    """Characteristic by the median of the predicted friction ratio at the levels of another.
+
+    Parameters
+    ----------
+    rig : Rig
+    plant : FrictionCharacteristic
+        By `computed_characteristic`.
+    chances : ReductionChances
+        Of the rig.
+
+    Returns
+    -------
+    FrictionCharacteristic
+
+    Raises
+    ------
+    InvalidInput
+        If the amplitude along the characteristic is not known.
+
+    See Also
+    --------
+    computed_characteristic
+    """
+    if plant.vibration_amplitude is None:
+        raise InvalidInput(f"{rig.title}: the amplitude along the friction characteristic is not known")
+    ratio = np.median(chances.draws(vibration_amplitude=plant.vibration_amplitude), axis=0)
+    force = ratio * chances.friction.value * rig.normal_load
+    return _decreasing_part(rig, plant.quantity, plant.level, force, amplitude=plant.vibration_amplitude)
 
 
 def efficiency_characteristic(
@@ -222,7 +287,12 @@ def linear_characteristic(characteristic: FrictionCharacteristic) -> FrictionCha
     FrictionCharacteristic
     """
     ends = [0, -1]
-    return replace(characteristic, level=characteristic.level[ends], friction_force=characteristic.friction_force[ends])
+    return replace(
+        characteristic,
+        level=characteristic.level[ends],
+        friction_force=characteristic.friction_force[ends],
+        vibration_amplitude=None,
+    )
 
 
 def _levels(quantity: CommandedQuantity, highest: float, points: int) -> Floats:
@@ -232,13 +302,9 @@ def _levels(quantity: CommandedQuantity, highest: float, points: int) -> Floats:
     return np.linspace(0, float(require_non_negative(**{quantity.name: highest})), points)
 
 
-def _ratios(rig: Rig, levels: Floats) -> Floats:
-    """Friction ratios at each voltage or amplitude, NaN where there is none; 1 without vibration."""
-    vibrated = operating_points(rig, **level_settings(rig, levels[1:]))
-    return np.concatenate([[1.0], vibrated.friction_ratio])
-
-
-def _decreasing_part(rig: Rig, quantity: CommandedQuantity, levels: Floats, force: Floats) -> FrictionCharacteristic:
+def _decreasing_part(
+    rig: Rig, quantity: CommandedQuantity, levels: Floats, force: Floats, *, amplitude: Floats | None = None
+) -> FrictionCharacteristic:
     """Characteristic up to the first NaN or driving force, without the points at which friction does not decrease."""
     intrinsic = rig.friction_coefficient * rig.normal_load
     kept = [0]
@@ -250,4 +316,7 @@ def _decreasing_part(rig: Rig, quantity: CommandedQuantity, levels: Floats, forc
     if len(kept) < 2:
         highest = format_si(float(levels[-1]), quantity.unit, digits=6)
         raise InvalidInput(f"{rig.title}: no {quantity.word} up to {highest} reduces friction; raise its limit")
-    return FrictionCharacteristic(level=levels[kept], friction_force=force[kept], quantity=quantity)
+    moved = None if amplitude is None else amplitude[kept]
+    return FrictionCharacteristic(
+        level=levels[kept], friction_force=force[kept], quantity=quantity, vibration_amplitude=moved
+    )

@@ -5,22 +5,29 @@ structure.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from math import inf
 from typing import Annotated, Any, Literal, Unpack
 
+from sonolube.charts import Part
 from sonolube.design import control as loops
 from sonolube.design.control import stick_slip as figures
 from sonolube.design.control.control_design import control_dataset
+from sonolube.design.control.posterior_loop import predicted_force_parts
 from sonolube.design.control.rejection import rejection_chart
 from sonolube.design.control.stick_slip import StickSlipSuppression, stick_slip_suppression
-from sonolube.errors import InvalidInput
+from sonolube.errors import InvalidInput, OutsideRange, SonolubeError
 from sonolube.facts.metrics import EfficiencyLine
+from sonolube.measurement.run_columns import runs_help
+from sonolube.prediction.chances import ReductionChances, odds_text, reduction_chances
+from sonolube.prediction.predictive import DRAWS
 from sonolube.report import Drawing, Page
 from sonolube.report.results.design import control_design as results
 from sonolube.report.results.record_object import amplitude_rows, operating_point, rig_settings
 from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, commanded_quantity, own_level
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
-from sonolube.tasks.parameters import Number, Parameter, Quantity, RigFile, Watched, rig_of
+from sonolube.tasks.own_tables import MappedRuns, runs_of
+from sonolube.tasks.parameters import File, Number, Parameter, Quantity, RigFile, RunsSource, Watched, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 from sonolube.text.units import format_si, to_si
@@ -126,6 +133,13 @@ def friction_force(name: str, target: str | float, *, normal_load: float) -> flo
     return value
 
 
+_RUNS = File(
+    runs_help("Own measured runs, on which the predicted friction rests beside the published tests. Columns"),
+    "RUNS.csv",
+    option="--runs --measured",
+)
+
+
 @answer
 class ControlAnswer(Answer):
     """A tuned controller with its margins, step response and energy, and stick-slip where it was computed."""
@@ -136,23 +150,24 @@ class ControlAnswer(Answer):
     rejection: loops.DisturbanceRejection
     suppression: StickSlipSuppression | None
     assumed: Mapping[str, str]
+    posterior: loops.PosteriorLoop | str
+    tuned_for: str = "model"
 
     def blocks(self) -> Sequence[Block]:
         """Operating point, controller, margins, step response and energy."""
-        return [
-            operating_point(self.rig),
-            Rows(
-                [*amplitude_rows(self.rig), *results.facts(self.settings, self.study, self.rejection, self.suppression)]
-            ),
-        ]
+        return [operating_point(self.rig), Rows([*amplitude_rows(self.rig), *self._facts()])]
 
     def object(self) -> dict[str, Any]:
-        """Controller, margins, step response, energy and stick-slip."""
-        return results.control_object(self.rig, self.settings, self.study, self.rejection, self.suppression)
+        """Controller, margins, step response, energy, stick-slip; reach and margins by the prediction."""
+        found = results.control_object(self.rig, self.settings, self.study, self.rejection, self.suppression)
+        found["summary"] = [*results.posterior_summary(self.study, self.posterior), *found["summary"]]
+        return found | results.posterior_object(self.posterior, tuned_for=self.tuned_for)
 
     def caveats(self) -> Sequence[str]:
-        """Those of the rig at its own operating point, a thin gain margin, and a resonance that tracking has lost."""
-        return results.caveats(self.rig, self.study)
+        """Those of the rig at its own operating point, thin margins, and a resonance that tracking has lost."""
+        feed_forward = self.settings.feed_forward
+        predicted = results.posterior_caveats(self.posterior, feed_forward=feed_forward, tuned_for=self.tuned_for)
+        return [*results.caveats(self.rig, self.study), *predicted]
 
     def assumptions(self) -> Mapping[str, str]:
         """Assumptions of the rig file, of the resonance and of the holder."""
@@ -170,7 +185,7 @@ class ControlAnswer(Answer):
                 caption=f"Friction of {self.rig.title} in closed loop; every point computed.",
             ),
             f"{self._name}-design": Drawing(
-                chart=lambda: figures.control_design_chart(study),
+                chart=lambda: figures.control_design_chart(study).with_parts(0, *self._predicted_parts()),
                 caption=f"Map from {study.plant.quantity.word} to friction of the controller, and magnitude of the"
                 " sensitivity function.",
             ),
@@ -204,9 +219,18 @@ class ControlAnswer(Answer):
             name="control",
             title=f"Friction control of {self.rig.title}",
             settings=rig_settings(self.rig),
-            facts=results.facts(self.settings, self.study, self.rejection, self.suppression),
+            facts=self._facts(),
             tables=[results.lookup_table(self.study)],
         )
+
+    def _facts(self) -> list[tuple[str, str]]:
+        """Facts of the design, those of the prediction after the first."""
+        first, *rest = results.facts(self.settings, self.study, self.rejection, self.suppression)
+        return [first, *results.posterior_facts(self.study, self.posterior, tuned_for=self.tuned_for), *rest]
+
+    def _predicted_parts(self) -> tuple[Part, ...]:
+        """Predicted friction over the level, where there is a prediction."""
+        return () if isinstance(self.posterior, str) else predicted_force_parts(self.study, self.posterior)
 
     @property
     def _name(self) -> str:
@@ -238,7 +262,8 @@ def control(
         ),
     ] = None,
     feed_forward: Annotated[
-        Literal["model", "efficiency", "none"], Parameter("Map from friction to voltage or amplitude.")
+        Literal["model", "prediction", "efficiency", "none"],
+        Parameter("Map from friction to voltage or amplitude; prediction is by the median of sonolube predict."),
     ] = "model",
     efficiency: Annotated[
         Number | None,
@@ -267,6 +292,12 @@ def control(
     coupling: Coupling = 0.2,
     stick_slip: Annotated[bool, Parameter("Also compute stick-slip of the slider on an elastic holder.")] = False,
     duration: Annotated[Number, Quantity("Duration of the run.", "s")] = "0.2s",
+    tuned_for: Annotated[
+        Literal["model", "worst"],
+        Parameter("Gain at which the loop has its margins: that of the model, or the highest of the predicted 80 %."),
+    ] = "model",
+    runs: Annotated[RunsSource, _RUNS] = None,
+    mapping: MappedRuns = None,
     **watch: Unpack[Watched],
 ) -> ControlAnswer:
     """Friction control: a tuned controller, its run in closed loop, its C source and its lookup table.
@@ -274,6 +305,7 @@ def control(
     Example: sonolube control examples/rigs/tribometer.toml --friction 0.5N --factor 1.15 --warming 40K
     """
     known = rig_of(rig)
+    measured = runs_of(runs, mapping)
     interval, dead_time, run_time = _times(rate, delay, duration)
     final_rise = in_si("warming", warming)
     friction_step = in_si("disturbance", disturbance)
@@ -312,7 +344,8 @@ def control(
     with stage("controlling"):
         mode, assumed = resonance_without_structure(known, quality, coupling)
         line = _efficiency_line(in_si("efficiency", efficiency)) if feed_forward == "efficiency" else None
-        study = loops.design_control(known, settings, mode=mode, line=line)
+        chances = _chances(known, measured, is_needed=feed_forward == "prediction" or tuned_for == "worst")
+        settings, study, posterior = _designed(known, settings, chances, tuned_for, mode=mode, line=line)
         rejection = loops.disturbance_rejection(
             study.loop,
             friction_force=study.friction_force,
@@ -325,8 +358,52 @@ def control(
         own = format_si(own_level(known), "m")
         assumed["amplitude limit"] = f"the rig's own amplitude, {own}; {shown('amplitude_limit')} gives another"
     return ControlAnswer(
-        rig=known, settings=settings, study=study, rejection=rejection, suppression=suppression, assumed=assumed
+        rig=known,
+        settings=settings,
+        study=study,
+        rejection=rejection,
+        suppression=suppression,
+        assumed=assumed,
+        posterior=posterior,
+        tuned_for=tuned_for,
     )
+
+
+def _chances(rig: Rig, runs: "Dataset | None", *, is_needed: bool) -> ReductionChances | str:
+    """Distribution of the friction ratio of a rig; why there is none, which is refused where it is needed."""
+    try:
+        return reduction_chances(rig, runs=runs, draws=DRAWS)
+    except SonolubeError as refusal:
+        if is_needed or runs is not None:
+            raise
+        return str(refusal).removeprefix(f"{rig.title}: ")
+
+
+def _designed(
+    rig: Rig,
+    settings: loops.ControlSettings,
+    chances: ReductionChances | str,
+    tuned_for: str,
+    *,
+    mode: loops.VibrationMode | None,
+    line: EfficiencyLine | None,
+) -> tuple[loops.ControlSettings, loops.ControlDesign, loops.PosteriorLoop | str]:
+    """Settings with the time constant that is taken, the design, and the loop over the posterior where there is one."""
+    if isinstance(chances, str):
+        return settings, loops.design_control(rig, settings, mode=mode, line=line), chances
+    study = loops.design_control(rig, settings, mode=mode, line=line, chances=chances)
+    usual = settings.closed_loop_time
+    found = loops.posterior_loop(rig, study, chances, closed_loop_time=usual)
+    if tuned_for == "model":
+        return settings, study, found
+    if found.cautious is None:
+        raise OutsideRange(
+            f"{shown('tuned_for')} worst: the target is within reach with {odds_text(found.target_chance)}, so that"
+            " no gain is known; ask for more friction"
+        )
+    slower = replace(settings, closed_loop_time=found.cautious.closed_loop_time)
+    study = loops.design_control(rig, slower, mode=mode, line=line, chances=chances)
+    return slower, study, loops.posterior_loop(rig, study, chances, closed_loop_time=usual)
 
 
 def _limits(

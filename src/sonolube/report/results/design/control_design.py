@@ -10,12 +10,14 @@ from sonolube.design.control import (
     ControlEnergy,
     ControlSettings,
     DisturbanceRejection,
+    PosteriorLoop,
     StickSlipMotion,
     capture_limit,
     stick_slip as holder,
 )
 from sonolube.design.control.control_design import final_state, lost_resonance
 from sonolube.design.control.stick_slip import StickSlipSuppression
+from sonolube.prediction.chances import odds_text
 from sonolube.report.page import PageTable
 from sonolube.report.results.record_object import amplitude_object, picked
 from sonolube.rig import AMPLITUDE, Rig, operating_caveats
@@ -27,6 +29,8 @@ _NO_VOLTAGE = (
     "the rig has no voltage: resonance, its tracking and warming, and electrical energy are those of the generator that"
     " holds the amplitude, and are not computed"
 )
+_MARGINS = ("gain_margin", "phase_margin", "delay_margin", "sensitivity_peak")
+_SURE = 0.8  # chance of the target, below which it is said
 _TABLE_ROWS = 12  # of the lookup table on the page
 
 _ENERGIES = ("amplifier_energy", "electrical_energy")  # of a voltage alone
@@ -142,6 +146,106 @@ def caveats(rig: Rig, study: ControlDesign) -> list[str]:
             f" to {edge} above it; warm slower or keep the drive on"
         )
     return found
+
+
+def posterior_facts(study: ControlDesign, found: PosteriorLoop | str, *, tuned_for: str) -> list[tuple[str, str]]:
+    """Friction within reach, chance of the target, margins at the gains of the 80 % interval, and the cautious tuning.
+
+    `found`: By `posterior_loop`, or why there is no prediction.
+    """
+    if isinstance(found, str):
+        return [("not predicted", found)]
+    reach = f"{_reach_text(study, found)}; the target is within reach with {odds_text(found.target_chance)}"
+    rows = [("predicted reach", reach)]
+    if found.gain is None or found.cautious is None:
+        return rows
+    gains = [f"{each:.2g}" for each in found.gain]
+    rows.append(("predicted gain", f"{gains[1]}, {gains[0]} to {gains[2]} (80 %), where the target is within reach"))
+    quick, _, worst = found.margins
+    phases = f"phase {degrees(worst.phase_margin):.1f} to {degrees(quick.phase_margin):.1f} deg"
+    stable = f"gain {worst.gain_margin:.2f} to {quick.gain_margin:.2f}, {phases}"
+    unstable = (
+        f"unstable at the highest gain, to gain {quick.gain_margin:.2f}, phase {degrees(quick.phase_margin):.1f} deg"
+    )
+    rows.append(("margins, 80 %", stable if worst.gain_margin > 1 else unstable))
+    cautious = found.cautious
+    kept = f"gain {cautious.margins.gain_margin:.2f}, phase {degrees(cautious.margins.phase_margin):.1f} deg"
+    slower = format_si(cautious.closed_loop_time, "s")
+    lost = f"{100 * cautious.given_up:.0f} % of the bandwidth of feedback is given up"
+    usual = format_si(cautious.usual_time, "s")
+    taken = "is tuned for" if tuned_for == "worst" else "would be held"
+    text = f"{kept} at the highest gain {taken} by a closed loop of {slower} in place of {usual}: {lost}"
+    return [*rows, ("worst of 80 %", text)]
+
+
+def posterior_summary(study: ControlDesign, found: PosteriorLoop | str) -> list[dict[str, str]]:
+    """Label and text of the predicted reach, the chance of the target and the worst gain margin; empty without them."""
+    if isinstance(found, str):
+        return []
+    rows = [
+        {"label": "Least friction within reach, predicted", "text": _reach_text(study, found)},
+        {"label": "Target within reach", "text": odds_text(found.target_chance)},
+    ]
+    if found.margins:
+        text = f"{found.margins[-1].gain_margin:.3g}"
+        rows.append({"label": "Gain margin at the worst of 80 %", "text": text})
+    return rows
+
+
+def _reach_text(study: ControlDesign, found: PosteriorLoop) -> str:
+    """Median and 80 % interval of the least friction force within reach."""
+    low, median, high = (format_si(each, "N", scale=study.friction_force) for each in found.reach)
+    return f"{median}, {low} to {high} (80 %)"
+
+
+def posterior_object(found: PosteriorLoop | str, *, tuned_for: str) -> dict[str, Any]:
+    """The same for JSON."""
+    if isinstance(found, str):
+        return {"prediction": {"runs": 0, "reason": found}}
+    low, median, high = found.reach
+    content: dict[str, Any] = {
+        "prediction": {"runs": found.runs, "reason": None},
+        "predicted_least_friction": {"median": median, "interval_80": [low, high], "unit": "N"},
+        "target_chance": found.target_chance,
+        "tuned_for": tuned_for,
+    }
+    if found.gain is None or found.cautious is None:
+        return content
+    low, median, high = map(float, found.gain)
+    by_gain = {name: [float(getattr(each, name)) for each in found.margins] for name in _MARGINS}
+    cautious = found.cautious
+    return content | {
+        "predicted_gain": {"median": median, "interval_80": [low, high]},
+        "predicted_margins": {
+            name: {"median": at[1], "interval_80": sorted([at[0], at[2]]), "unit": quantity(name).unit}
+            for name, at in by_gain.items()
+        },
+        "worst_of_80": {
+            **si({"closed_loop_time": cautious.closed_loop_time}),
+            **si(picked(cautious.gains, "proportional_gain", "integral_time")),
+            **si(picked(cautious.margins, *_MARGINS)),
+            "bandwidth_given_up": cautious.given_up,
+        },
+    }
+
+
+def posterior_caveats(found: PosteriorLoop | str, *, feed_forward: str, tuned_for: str) -> list[str]:
+    """A loop that is near instability within the 80 % interval, and a target that may be out of reach."""
+    if isinstance(found, str):
+        return []
+    caveats = []
+    if found.target_chance < _SURE:
+        caveats.append(f"the target is within reach with {odds_text(found.target_chance)} alone, by `sonolube predict`")
+    if found.gain is None or found.margins[-1].gain_margin >= _MIN_GAIN_MARGIN:
+        return caveats
+    verdict = "unstable" if found.margins[-1].gain_margin < 1 else "near instability"
+    table = "" if feed_forward == "prediction" else ", and a feed-forward by the prediction lowers it"
+    tuning = "" if tuned_for == "worst" else "; a tuning for the worst holds its margins"
+    caveats.append(
+        f"real friction may change {found.gain[-1]:.2g} times as the controller expects (upper end of 80 %), where the"
+        f" loop is {verdict}{tuning}{table}"
+    )
+    return caveats
 
 
 def holder_text() -> str:

@@ -1,0 +1,204 @@
+r"""Control loop over the posterior of the friction of its rig: friction within reach, gain, margins, cautious tuning.
+
+A draw of the rig has the friction force F_d over the level u, where the controller expects F. The loop settles at the
+level at which F_d is the target, and its gain there is
+
+.. math:: g_d = \frac{\mathrm d F_d/\mathrm d u}{\mathrm d F/\mathrm d u}
+
+All margins fall with the gain. A tuning whose time constants of closed loop and delay add to g times those of another
+has the other's loop at the gain g: Skogestad's rule sets the proportional gain inversely to their sum.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from sonolube.charts import Band, Line, Part
+from sonolube.checks import Floats
+from sonolube.design.control.control_design import ControlDesign
+from sonolube.design.control.controller import FrictionController
+from sonolube.design.control.friction_characteristic import FrictionCharacteristic, drawn_forces
+from sonolube.design.control.process import PIGains, Process, StabilityMargins, simc_gains, stability_margins
+from sonolube.prediction.chances import INTERVAL, ReductionChances
+from sonolube.rig import Rig
+
+MIN_REACHING: Final = 0.01
+"""Share of the draws with the target within reach below which no gain of the loop is stated."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class CautiousTuning:
+    """Tuning with the margins of the rule at the highest gain of the 80 % interval.
+
+    Parameters
+    ----------
+    closed_loop_time : float
+        Time constant of the closed loop that it takes. [s]
+    gains : PIGains
+    margins : StabilityMargins
+        At the highest gain of the interval.
+    usual_time : float
+        Time constant of the closed loop for the gain 1. [s]
+    given_up : float
+        Share of the bandwidth of feedback, the inverse of the time constants of closed loop and delay, that is lost. []
+    """
+
+    closed_loop_time: float
+    gains: PIGains
+    margins: StabilityMargins
+    usual_time: float
+    given_up: float
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class PosteriorLoop:
+    """Friction within reach and gain of a loop by the prediction of its rig.
+
+    Parameters
+    ----------
+    force : ndarray, shape (3, n)
+        Ends of the 80 % interval and median of the friction force at each level of the plant. [N]
+    target_chance : float
+        That the target lies between the friction at the highest level and that without vibration. []
+    gain : ndarray, shape (3,), or None
+        Ends of the 80 % interval of the gain and its median, over the draws that reach the target; None where fewer
+        than 1 % do. []
+    margins : tuple of StabilityMargins
+        At these gains; empty without them.
+    cautious : CautiousTuning or None
+    runs : int
+        Own runs that the prediction rests on.
+    """
+
+    force: Floats
+    target_chance: float
+    gain: Floats | None
+    margins: tuple[StabilityMargins, ...]
+    cautious: CautiousTuning | None
+    runs: int
+
+    @property
+    def reach(self) -> tuple[float, float, float]:
+        """Lower end, median and upper end of the least friction force within reach, in N."""
+        low, median, high = (float(each) for each in self.force[:, -1])
+        return low, median, high
+
+
+def drawn_gains(
+    forces: Floats, plant: FrictionCharacteristic, controller: FrictionController, *, friction_force: float
+) -> Floats:
+    """Gain of the loop of each draw where its friction first falls to a target; NaN where the target is out of reach.
+
+    Parameters
+    ----------
+    forces : ndarray, shape (draws, n)
+        Friction force of each draw at the levels of the plant, linear between them. [N]
+    plant : FrictionCharacteristic
+    controller : FrictionController
+    friction_force : float
+        Target. [N]
+
+    Returns
+    -------
+    ndarray, shape (draws,)
+        Ratio of slopes of the draw and of the controller's characteristic between the two levels about the target. []
+    """
+    fallen = forces <= friction_force
+    end = np.argmax(fallen, axis=1)
+    reached = fallen.any(axis=1) & (end > 0)
+    end = np.maximum(end, 1)
+    rows = np.arange(len(forces))
+    actual = forces[rows, end - 1] - forces[rows, end]
+    table = np.interp(plant.level, controller.level, controller.force_reduction)
+    expected = table[end] - table[end - 1]
+    within = reached & (plant.level[end] <= controller.level[-1] * (1 + 1e-9)) & (expected > 0)
+    return np.where(within, actual / np.where(expected > 0, expected, 1.0), np.nan)
+
+
+def posterior_loop(
+    rig: Rig, study: ControlDesign, chances: ReductionChances, *, closed_loop_time: float | None = None
+) -> PosteriorLoop:
+    """Friction within reach, gain and margins of a control loop over the posterior of its rig.
+
+    Parameters
+    ----------
+    rig : Rig
+    study : ControlDesign
+    chances : ReductionChances
+        Of the rig.
+    closed_loop_time : float, optional
+        Time constant of the closed loop by which the tuning for the gain 1 is made; the effective dead time by default.
+        [s]
+
+    Returns
+    -------
+    PosteriorLoop
+
+    See Also
+    --------
+    design_control, stability_margins
+    """
+    plant, controller = study.plant, study.controller
+    forces = drawn_forces(rig, plant, chances)
+    gains = drawn_gains(forces, plant, controller, friction_force=study.friction_force)
+    known = gains[np.isfinite(gains)]
+    chance = known.size / gains.size
+    margins: tuple[StabilityMargins, ...] = ()
+    gain, cautious = None, None
+    if chance >= MIN_REACHING:
+        process, gain = controller.process, np.quantile(known, INTERVAL)
+        margins = tuple(margins_at_gain(process, controller.gains, gain=float(each)) for each in gain)
+        cautious = _cautious_tuning(process, float(gain[-1]), closed_loop_time)
+    return PosteriorLoop(
+        force=np.quantile(forces, INTERVAL, axis=0),
+        target_chance=chance,
+        gain=gain,
+        margins=margins,
+        cautious=cautious,
+        runs=chances.runs,
+    )
+
+
+def margins_at_gain(process: Process, gains: PIGains, *, gain: float) -> StabilityMargins:
+    """Stability margins of a loop whose plant has a static gain.
+
+    Parameters
+    ----------
+    process : Process
+    gains : PIGains
+    gain : float
+        From the commanded to the actual friction force. []
+
+    Returns
+    -------
+    StabilityMargins
+    """
+    return stability_margins(process, replace(gains, proportional_gain=gain * gains.proportional_gain))
+
+
+def _cautious_tuning(process: Process, highest_gain: float, closed_loop_time: float | None) -> CautiousTuning:
+    """Tuning with the margins of the rule at the highest gain, not quicker than that for the gain 1."""
+    delay = process.effective_dead_time
+    usual = delay if closed_loop_time is None else closed_loop_time
+    factor = max(highest_gain, 1.0)
+    slower = factor * (usual + delay) - delay
+    gains = simc_gains(process, closed_loop_time=slower)
+    return CautiousTuning(
+        closed_loop_time=slower,
+        gains=gains,
+        margins=margins_at_gain(process, gains, gain=highest_gain),
+        usual_time=usual,
+        given_up=1 - 1 / factor,
+    )
+
+
+def predicted_force_parts(study: ControlDesign, found: PosteriorLoop) -> tuple[Part, ...]:
+    """80 % interval and median of the friction force over the level, for the chart of the design."""
+    plant = study.plant
+    low, median, high = found.force
+    level = plant.quantity.axis_scale * plant.level
+    return (
+        Band(x=level, low=low, high=high, label="predicted, 80 %", opacity=0.2),
+        Line(x=level, y=median, label="predicted median", dash=3, weight=0.7),
+    )
