@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from sonolube.models.surfaces import HeightMap, spikes
+from sonolube.models.surfaces import HeightMap, spike_heights
 
 SCAN = np.random.default_rng(5).normal(0.0, 0.5e-6, (80, 90)).cumsum(axis=0).cumsum(axis=1) * 1e-2
 
 
 def found(height: np.ndarray) -> np.ndarray:
-    return spikes(HeightMap(height=height, spacing_x=1e-6, spacing_y=1e-6))
+    return spike_heights(HeightMap(height=height, spacing_x=1e-6, spacing_y=1e-6))
 
 
 def test_pixels_far_out_of_their_neighbours_are_spikes_of_that_height() -> None:

@@ -92,4 +92,4 @@ from .spectrum import (
     profiles as profiles,
     radial_spectrum as radial_spectrum,
 )
-from .spikes import spikes as spikes
+from .spikes import spike_heights as spike_heights

@@ -10,7 +10,7 @@ _OF_NEIGHBOURS = 20.0  # robust deviations of the differences to the median of t
 _OF_HEIGHTS = 5.0  # robust deviations of the heights
 
 
-def spikes(surface: HeightMap) -> Floats:
+def spike_heights(surface: HeightMap) -> Floats:
     """Height of each spike above the median of its neighbours, 0 elsewhere.
 
     Parameters

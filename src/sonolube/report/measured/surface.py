@@ -205,7 +205,7 @@ def surface_sheet(path: Path, *, settings: SurfaceSettings) -> sheet.Sheet:
 
 def _spikes(levelled: HeightMap) -> tuple[str, ...]:
     """Caveat on pixels that stand out of their neighbours, with the roughness and the summits without them."""
-    heights = surfaces.spikes(levelled)
+    heights = surfaces.spike_heights(levelled)
     count = int(np.count_nonzero(heights))
     if not count:
         return ()
