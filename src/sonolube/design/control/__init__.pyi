@@ -35,7 +35,7 @@ from .performance import (
     control_energy as control_energy,
     step_response_metrics as step_response_metrics,
 )
-from .posterior_loop import (
+from .predicted_loop import (
     CautiousTuning as CautiousTuning,
     PosteriorLoop as PosteriorLoop,
     margins_at_gain as margins_at_gain,

@@ -13,7 +13,7 @@ from sonolube.charts import Part
 from sonolube.design import control as loops
 from sonolube.design.control import stick_slip as figures
 from sonolube.design.control.control_design import control_dataset
-from sonolube.design.control.posterior_loop import predicted_force_parts
+from sonolube.design.control.predicted_loop import predicted_force_parts
 from sonolube.design.control.rejection import rejection_chart
 from sonolube.design.control.stick_slip import StickSlipSuppression, stick_slip_suppression
 from sonolube.errors import InvalidInput, OutsideRange, SonolubeError

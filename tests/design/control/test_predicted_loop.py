@@ -15,7 +15,7 @@ from sonolube.design.control.friction_characteristic import (
     linear_characteristic,
     predicted_characteristic,
 )
-from sonolube.design.control.posterior_loop import _cautious_tuning, drawn_gains, posterior_loop
+from sonolube.design.control.predicted_loop import _cautious_tuning, drawn_gains, posterior_loop
 from sonolube.errors import InvalidInput
 from sonolube.prediction.chances import ReductionChances, reduction_chances
 

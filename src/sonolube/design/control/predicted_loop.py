@@ -39,9 +39,9 @@ class CautiousTuning:
     margins : StabilityMargins
         At the highest gain of the interval.
     usual_time : float
-        Time constant of the closed loop for the gain 1. [s]
+        Time constant of the closed loop for the gain 1, in s.
     given_up : float
-        Share of the bandwidth of feedback, the inverse of the time constants of closed loop and delay, that is lost. []
+        Share of the bandwidth of feedback, the inverse of the time constants of closed loop and delay, that is lost.
     """
 
     closed_loop_time: float
@@ -58,12 +58,12 @@ class PosteriorLoop:
     Parameters
     ----------
     force : ndarray, shape (3, n)
-        Ends of the 80 % interval and median of the friction force at each level of the plant. [N]
+        Ends of the 80 % interval and median of the friction force at each level of the plant, in N.
     target_chance : float
-        That the target lies between the friction at the highest level and that without vibration. []
+        That the target lies between the friction at the highest level and that without vibration.
     gain : ndarray, shape (3,), or None
         Ends of the 80 % interval of the gain and its median, over the draws that reach the target; None where fewer
-        than 1 % do. []
+        than 1 % do.
     margins : tuple of StabilityMargins
         At these gains; empty without them.
     cautious : CautiousTuning or None
@@ -93,7 +93,7 @@ def drawn_gains(
     Parameters
     ----------
     forces : ndarray, shape (draws, n)
-        Friction force of each draw at the levels of the plant, linear between them. [N]
+        Friction force of each draw at the levels of the plant, linear between them, in N.
     plant : FrictionCharacteristic
     controller : FrictionController
     friction_force : float
@@ -102,7 +102,7 @@ def drawn_gains(
     Returns
     -------
     ndarray, shape (draws,)
-        Ratio of slopes of the draw and of the controller's characteristic between the two levels about the target. []
+        Ratio of slopes of the draw and of the controller's characteristic between the two levels about the target.
     """
     fallen = forces <= friction_force
     end = np.argmax(fallen, axis=1)
@@ -168,7 +168,7 @@ def margins_at_gain(process: Process, gains: PIGains, *, gain: float) -> Stabili
     process : Process
     gains : PIGains
     gain : float
-        From the commanded to the actual friction force. []
+        From the commanded to the actual friction force.
 
     Returns
     -------
