@@ -17,6 +17,7 @@ from sonolube.laboratory.dry_run import dry_run
 from sonolube.laboratory.records import Observation
 from sonolube.report.blocks import Rows, Table, Verbatim
 from sonolube.report.results import ended_run as results
+from sonolube.rig.vibration_direction import NORMAL, VibrationDirection
 
 FOLDER = Path("runs", "0715 brass")
 ONE, TWO = FOLDER / "part-1.nc", FOLDER / "part-2.nc"
@@ -153,8 +154,11 @@ def test_the_mean_friction_is_of_recordings_of_up_to_ten_million_samples(
 
 
 def test_a_virtual_run_says_that_it_measures_nothing_and_where_its_protocol_overrules_the_rig() -> None:
-    rig: Any = SimpleNamespace(normal_load=5.0)
+    rig: Any = SimpleNamespace(normal_load=5.0, direction=NORMAL)
     assert results.run_caveats(run({}, caveats=("gap",)), rig) == ["gap", results.SIMULATED]
+    turned: Any = SimpleNamespace(normal_load=5.0, direction=VibrationDirection(direction="along"))
+    said = "the vibration is along the sliding, of which no wear law is: it wears as without vibration"
+    assert results.run_caveats(run({}), turned) == [said, results.SIMULATED]
     set_load = run({}, facts={"normal_load": 3.0})
     assert results.run_caveats(set_load, rig) == [
         "the protocol sets 3 N, and the rig file 5 N: the test is at 3 N",

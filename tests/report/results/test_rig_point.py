@@ -47,7 +47,7 @@ def test_the_error_on_published_tests_is_of_vibration_along_the_normal(
 ) -> None:
     error = SimpleNamespace(rms=0.1, count=2)
     monkeypatch.setattr("sonolube.validation.assessment.unseen_error", lambda model: error)
-    monkeypatch.setattr("sonolube.prediction.applicability.friction_interval", lambda rig: "interval")
+    monkeypatch.setattr("sonolube.prediction.applicability.friction_interval", lambda rig, evidence: "interval")
     inner = SimpleNamespace(rig=SimpleNamespace(direction=SimpleNamespace(is_normal=is_normal)))
     monkeypatch.setattr("sonolube.rig.resolved_rig.resolved_rig", lambda rig: inner)
     rig: Any = SimpleNamespace()

@@ -18,6 +18,7 @@ from sonolube.laboratory import RunControl
 from sonolube.laboratory.virtual_tribometer import Disturbances
 from sonolube.report.results.ended_run import SIMULATED
 from sonolube.rig import read_rig
+from sonolube.rig.vibration_direction import NORMAL
 from sonolube.tasks.lab import friction_hold, protocol_run
 from sonolube.tasks.lab.friction_hold import HoldAnswer, hold
 from sonolube.tasks.lab.protocol_run import RunAnswer, run
@@ -94,14 +95,16 @@ def test_a_virtual_rig_is_at_the_load_and_on_the_groove_of_the_protocol(monkeypa
     monkeypatch.setattr(protocol_run, "virtual_tribometer", tribometer)
     rig = read_rig(TRIBOMETER)
     metadata = SimpleNamespace(normal_load=None, groove_diameter=None, thermocouple="actuator")
-    plan: Any = SimpleNamespace(rig=rig, seed=4, protocol=SimpleNamespace(metadata=metadata))
+    plan: Any = SimpleNamespace(rig=rig, seed=4, protocol=SimpleNamespace(metadata=metadata), evidence=None)
     protocol_run._virtual_rig(plan)
     metadata.normal_load, metadata.groove_diameter, metadata.thermocouple = 7.0, 0.05, "contact"
     protocol_run._virtual_rig(plan, real_time=True)
     usual = {"groove_diameter": names_of(protocol_run).GROOVE_DIAMETER}
+    shared = {"seed": 4, "evidence": None}
+    later = {"groove_diameter": 0.05, "disturbances": Disturbances(contact_share=1.0)}
     assert made == [
-        (approx(3.0), usual | {"seed": 4, "real_time": False, "disturbances": Disturbances(contact_share=0.0)}),
-        (7.0, {"seed": 4, "real_time": True, "groove_diameter": 0.05, "disturbances": Disturbances(contact_share=1.0)}),
+        (approx(3.0), usual | shared | {"real_time": False, "disturbances": Disturbances(contact_share=0.0)}),
+        (7.0, shared | later | {"real_time": True}),
     ]
     plan.rig = None
     with raises(InvalidInput, match=r"^device_map virtual needs rig, whose friction it takes$"):
@@ -116,10 +119,10 @@ def recorded(outcome: str = "completed", *, has_recording: bool = True) -> Any:
 
 
 def test_a_run_has_assumptions_of_its_rig_and_the_mark_of_a_simulation_where_it_is_one() -> None:
-    rig: Any = SimpleNamespace(assumptions={"mass": "guessed"}, normal_load=3.0)
+    rig: Any = SimpleNamespace(assumptions={"mass": "guessed"}, normal_load=3.0, direction=NORMAL)
     state: Any = SimpleNamespace()
     virtual = RunAnswer(result=state, run=recorded(), simulated=True, rig=rig)
-    assert (virtual.assumptions(), virtual.caveats()) == ({"mass": "guessed"}, ["gap", SIMULATED])
+    assert (virtual.assumptions(), virtual.caveats()) == ({"mass": "guessed"}, ("gap", SIMULATED))
     real = RunAnswer(result=state, run=recorded("stopped"), simulated=False, rig=rig)
     assert (real.assumptions(), real.caveats()) == ({}, ("gap",))
     assert (virtual.is_failure, real.is_failure) == (False, True)
