@@ -1,5 +1,6 @@
 """Direction of a rig's vibration: words, angles, second components, limits into each other, refusals in one line."""
 
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -21,8 +22,10 @@ from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.rig.responses import simulation_arrays
 from sonolube.rig.vibration import steady_vibration
 from sonolube.rig.vibration_direction import NORMAL, SAME_DIRECTION, VibrationDirection, require_same_direction
+from sonolube.text.units import to_si
 
 RIGS = Path("examples/rigs")
+PUBLISHED = Path(__file__).parents[2] / "src" / "sonolube" / "prediction" / "published"
 BRISTLE, COULOMB, SPRINGS = (
     f"friction.model={name}" for name in ("bristle_with_holder", "coulomb", "asperity_stick_slip")
 )
@@ -177,7 +180,7 @@ def test_what_a_direction_was_tested_with_is_said_first() -> None:
         friction_point(tribometer("friction.model=coulomb", f"vibration.direction={word}"))
         for word in ("along", "across")
     )
-    assert "compared with two published points" in along.caveats[0]
+    assert "of seven published points it differs from two" in along.caveats[0]
     assert "theory alone" in across.caveats[0]
     assert "compared with no experiment" in across.caveats[0]
 
@@ -371,3 +374,22 @@ def test_runs_of_another_direction_than_their_rig_are_refused_by_their_words() -
     require_same_direction(frozenset(), NORMAL, title="runs")
     with raises(InvalidInput, match=r"^runs: vibrates .*; leave out runs with the direction torsional$"):
         require_same_direction(frozenset({"normal", "torsional"}), NORMAL, title="runs")
+
+
+def test_the_distances_of_coulombs_law_from_published_points_are_those_that_are_said() -> None:
+    above = []
+    for name in ("littmann_2001", "gutowski_2012", "luo_2024"):
+        (rig,) = tomllib.loads((PUBLISHED / f"{name}.toml").read_text(encoding="utf-8"))["rigs"]
+        for point in rig["points"]:
+            stated = rig | point
+            velocity = stated.get("vibration_velocity") or f"{2 * np.pi * 0.35e-6 * 26e3!r} m/s"
+            speed, peak = (to_si(text, unit="m/s", name="") for text in (stated["sliding_speed"], velocity))
+            measured = stated.get("friction_ratio", 1 - stated.get("friction_reduction", np.nan))
+            if "reduced_friction_force" in stated:
+                forces = (stated["reduced_friction_force"], stated["intrinsic_friction_force"])
+                measured = np.divide(*(to_si(force, unit="N", name="") for force in forces))
+            above.append(float(measured - 2 / np.pi * np.arcsin(min(speed / peak, 1.0))))
+    few, slow = above[:2], above[2:]
+    assert len(slow) == 5
+    assert max(map(abs, few)) <= 0.045
+    assert (round(min(slow), 2), round(max(slow), 2)) == (0.09, 0.15)
