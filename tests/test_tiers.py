@@ -74,13 +74,13 @@ def run(tmp_path: Path) -> Callable[..., str]:
 
 def test_a_test_is_daily_by_its_cost_its_function_and_its_file() -> None:
     costs = {
-        "a.py::test_quick": 0.4, "a.py::test_slow[1]": 30.0, "a.py::test_slow[2]": 3.0, "a.py::test_slow[3]": 2.0,
+        "a.py::test_quick": 0.2, "a.py::test_slow[1]": 30.0, "a.py::test_slow[2]": 3.0, "a.py::test_slow[3]": 1.0,
         "a.py::test_slower[1]": 9.0, "a.py::test_slower[2]": 5.0, "b.py::test_slowest": 9.5, "b.py::test_whole": 9.9,
-        "c.py::test_endless": 11.0, **{f"d.py::test_options[{i}]": 0.5 for i in range(100)},
+        "c.py::test_endless": 11.0, **{f"d.py::test_options[{i}]": 0.25 for i in range(100)},
     }  # fmt: skip
     daily = daily_tests(costs)
     options = {name for name in daily if name.startswith("d.py")}
-    assert len(options) == 12  # 12 times 0.5 s are 6 s
+    assert len(options) == 12  # 12 times 0.25 s are 3 s
     assert daily - options == {"a.py::test_quick", "a.py::test_slow[3]", "b.py::test_slowest"}
 
 

@@ -39,7 +39,8 @@ def given(task: str, arguments: dict[str, Any], places: Places = NOWHERE) -> dic
 
 
 def test_arguments_are_known_whole_and_without_those_of_doors() -> None:
-    with raises(InvalidInput, match=r"^nonsense: friction has no such argument; it has rig, model, interval$") as one:
+    known = "rig, model, interval, evidence"
+    with raises(InvalidInput, match=f"^nonsense: friction has no such argument; it has {known}$") as one:
         given("friction", {"rig": {"name": "tribometer"}, "nonsense": 1})
     assert one.value.key == "nonsense"
     with raises(InvalidInput, match=r"^rig: friction needs it$") as two:

@@ -220,6 +220,7 @@ def test_the_record_of_a_plan_has_its_files_and_everything_that_is_known_of_it(t
         "device_drive_hardware": "x",
         "late_maximum": 2.0,
         "groove_diameter": 0.028,
+        "vibration_direction": "normal",
         "specimen": "A3",
         "operator": "E",  # what is told for the run goes before the protocol
         "humidity": "45 %",

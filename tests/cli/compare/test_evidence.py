@@ -63,7 +63,7 @@ def test_a_posterior_is_learned_and_predicts_in_place_of_the_shipped_one(
     learned = sonolube("evidence", "learn", stubborn.parent, "--out", posterior, "--json").answer
     assert learned["files"] == [str(posterior)]
     scores = learned["blind_scores"]
-    assert [each["tests"] for each in scores.values()] == [20, 3, 20, 3, 23]
+    assert [each["tests"] for each in scores.values()] == [20, 3, 20, 3, 23, 7]
     assert learned["fingerprint"] in posterior.read_text("utf-8")
 
     rig = rigs / "tribometer.toml"

@@ -189,7 +189,7 @@ def _with_friction_positive(variables: _Variables) -> tuple[_Variables, list[str
     for name in _FRICTION & variables.keys():
         axis, values, attributes = variables[name]
         low, high = _ends(values)
-        if low < 0 and high < _SAME_SIGN * -low:
+        if np.count_nonzero(np.isfinite(values)) >= _FEWEST and low < 0 and high < _SAME_SIGN * -low:
             gain, offset = (-float(attributes[f"calibration_{each}"]) for each in ("gain", "offset"))
             changed[name] = (axis, -values, attributes | {"calibration_gain": gain, "calibration_offset": offset})
             caveats.append(
