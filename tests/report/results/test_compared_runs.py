@@ -28,6 +28,11 @@ def test_words_stay_words_even_where_they_are_digits_and_empty_cells_are_unknown
     assert (second["note"], second["friction_reduction"]) == ("", None)
 
 
+def test_a_direction_is_a_word_or_an_angle() -> None:
+    rows = [["run", "vibration_direction [rad]"], ["1", "normal"], ["2", "0.5"], ["3", ""]]
+    assert [each["vibration_direction"] for each in level_objects(rows)] == ["normal", 0.5, None]
+
+
 def test_a_level_has_its_uncertainty_beside_it_and_a_dash_for_what_is_not_known() -> None:
     table = level_table(level_objects(ROWS))
     assert list(table.heads) == ["run", "load", "speed", "voltage", "frequency", "friction", "reduction"]

@@ -8,6 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from sonolube.charts import Axis, Chart, Points, one_panel
+from sonolube.measurement.run_columns import DIRECTION_COLUMN, DIRECTION_WORDS, TEXT_NAMES
 from sonolube.report.blocks import Table
 from sonolube.text.units import format_si
 
@@ -24,11 +25,14 @@ _HEADS: Final = ("run", *_COLUMNS, "reduction")
 def level_objects(rows: Sequence[Sequence[str]]) -> list[dict[str, Any]]:
     """Rows of `sonolube.laboratory.catalogue.level_rows` as objects for JSON, in SI; None where nothing is known."""
     names = [heading.partition(" [")[0] for heading in rows[0]]
-    words = ("run", "block", "study", "source", "note")
-    return [
-        {name: cell if name in words else float(cell) if cell else None for name, cell in zip(names, row, strict=True)}
-        for row in rows[1:]
-    ]
+    return [{name: _value(name, cell) for name, cell in zip(names, row, strict=True)} for row in rows[1:]]
+
+
+def _value(name: str, cell: str) -> float | str | None:
+    """Number or text of a cell; None where it is empty and of a number."""
+    if name in TEXT_NAMES or (name == DIRECTION_COLUMN and cell in DIRECTION_WORDS):
+        return cell
+    return float(cell) if cell else None
 
 
 def level_table(levels: Sequence[dict[str, Any]]) -> Table:
