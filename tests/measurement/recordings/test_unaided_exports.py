@@ -38,7 +38,7 @@ def test_the_labels_are_found_below_a_preamble(name: str, tmp_path: Path) -> Non
     head, separator = PREAMBLES[name]
     rows = [f"{t:.2f}{separator}{f:.4f}" for t, f in zip(TIME, FORCE, strict=True)]
     recording = read_recording(written(tmp_path / name, [*head, *rows], "cp1252"))
-    assert recording.identical(read_recording(str(tmp_path / name)))
+    assert read_recording(str(tmp_path / name))["time"].to_numpy() == approx(TIME)
     (channel,) = recording.data_vars
     assert channel == ("friction_coefficient" if name == "tribox.txt" else "friction_force")
     assert recording[channel].to_numpy() == approx(FORCE, abs=1e-4)
