@@ -386,8 +386,10 @@ def test_the_distances_of_coulombs_law_from_published_points_are_those_that_are_
             speed, peak = (to_si(text, unit="m/s", name="") for text in (stated["sliding_speed"], velocity))
             measured = stated.get("friction_ratio", 1 - stated.get("friction_reduction", np.nan))
             if "reduced_friction_force" in stated:
-                forces = (stated["reduced_friction_force"], stated["intrinsic_friction_force"])
-                measured = np.divide(*(to_si(force, unit="N", name="") for force in forces))
+                reduced, intrinsic = (
+                    to_si(stated[f"{kind}_friction_force"], unit="N", name="") for kind in ("reduced", "intrinsic")
+                )
+                measured = reduced / intrinsic
             above.append(float(measured - 2 / np.pi * np.arcsin(min(speed / peak, 1.0))))
     few, slow = above[:2], above[2:]
     assert len(slow) == 5
