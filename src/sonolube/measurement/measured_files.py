@@ -242,6 +242,23 @@ def parse_number(cell: str, *, decimal_sign: str) -> float | None:
     return value if text.isascii() else None
 
 
+_GROUPED = {
+    sign: re.compile(rf"[-+]?\d{{1,3}}(?:(?:\{other}\d{{3}})+\{sign}\d+|(?:\{other}\d{{3}}){{2,}})", re.ASCII)
+    for sign, other in (".,", ",.")
+}
+
+
+def parse_grouped(cell: str, *, decimal_sign: str) -> float | None:
+    """Number whose thousands are separated by the mark that is not its decimal sign; None where that is in doubt.
+
+    One mark alone before three digits may be either.
+    """
+    text = cell.strip()
+    if _GROUPED[decimal_sign].fullmatch(text) is None:
+        return None
+    return parse_number(text.replace({".": ",", ",": "."}[decimal_sign], ""), decimal_sign=decimal_sign)
+
+
 def parse_numbers(cells: list[str], *, decimal_sign: str, missing: frozenset[str]) -> tuple[Floats, int | None]:
     """Numbers of a column of text, and the first row that holds neither a number nor a missing-value text.
 
@@ -250,6 +267,8 @@ def parse_numbers(cells: list[str], *, decimal_sign: str, missing: frozenset[str
     values = np.empty(len(cells))
     for row, cell in enumerate(cells):
         value = parse_number(cell, decimal_sign=decimal_sign)
+        if value is None:
+            value = parse_grouped(cell, decimal_sign=decimal_sign)
         if value is None:
             stripped = cell.strip()
             if stripped and stripped not in missing:

@@ -78,6 +78,9 @@ def changes_rate(*, time: Floats) -> bool:
     interval = np.diff(time)
     if interval.size < 2:
         return False
+    spread = np.sqrt(interval.max() / max(interval.min(), np.finfo(float).tiny))
+    if (spread - 1) / (spread + 1) < _CROWDED:  # no order of such intervals deviates by more
+        return False
     beside = np.maximum(np.append(interval[1:], interval[-2]), np.insert(interval[:-1], 0, interval[1]))
     passed = np.cumsum(np.where(interval > _ALONE * beside, beside, interval))
     even = np.arange(1, passed.size + 1) / passed.size

@@ -7,7 +7,7 @@ import pytest
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.recordings.channels_and_parts import stamped_seconds
+from sonolube.measurement.recordings.clocks import stamped_seconds
 from sonolube.measurement.recordings.reader import read_recording
 
 FORCE = 2.0 + 0.1 * np.sin(np.arange(400) / 7)

@@ -5,9 +5,10 @@ Parts are sections, segments, and files.
 
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from datetime import date, datetime, timedelta
+from datetime import datetime, timedelta
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,6 +19,8 @@ from sonolube import __version__
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, suggestion
 from sonolube.measurement.recordings.mapping import Selection
+from sonolube.measurement.recordings.raw_table import is_written_unit
+from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,7 +29,11 @@ TIME_LABELS = frozenset({"time", "t", "x_value", "timestamp", "elapsed_time", "r
 """Names of columns that hold the time of a recording."""
 
 _UNIT_OF_LABEL = re.compile(r"(?:\[([^\[\]]*)\]|\(([^()]*)\))(?: #\d+)?\Z")
+_UNIT_BEHIND = re.compile(r"(.+?)[\s_]+([^\W\d_]+(?:/[^\W\d_]+)?|%)")
+_CAPITAL = re.compile(r"(?<=[a-z])(?=[A-Z])")
 _MAX_LISTED = 16
+FRICTION = ("friction_force", "friction_coefficient")
+"""Channels of which one is the friction."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +66,28 @@ def name_and_unit(label: str) -> tuple[str, str | None]:
     text, unit = label.strip(), None
     if match := _UNIT_OF_LABEL.search(text):
         text, unit = text[: match.start()], match[1] if match[1] is not None else match[2]
-    return re.sub(r"\W+", "_", text.strip().lower()).strip("_") or "channel", unit
+    name = _plain(text)
+    behind = _UNIT_BEHIND.fullmatch(text) if unit is None and name not in quantities() else None
+    if behind and is_written_unit(behind[2]) and (stem := _plain(_CAPITAL.sub("_", behind[1]))) in _known_names():
+        return stem, behind[2]
+    return name, unit
+
+
+def _plain(text: str) -> str:
+    """Words of a label in small letters, with underscores between them."""
+    return re.sub(r"\W+", "_", text.strip().lower()).strip("_") or "channel"
+
+
+@cache
+def _known_names() -> frozenset[str]:
+    """Names of quantities and of times, and the other headings of friction."""
+    return TIME_LABELS | frozenset(quantities()) | frozenset(friction_headings())
+
+
+@cache
+def friction_headings() -> Mapping[str, str]:
+    """Quantity of friction by each other heading that the vocabulary has for it, as a name of a channel."""
+    return {_plain(word): quantity for quantity in FRICTION for word in quantities()[quantity].also}
 
 
 def chosen_channels(entries: Sequence[ChannelEntry], selection: Selection, path: Path) -> list[tuple[int, str]]:
@@ -148,44 +176,6 @@ def begun_at(text: str) -> datetime | None:
         return datetime(year, month, day, hour, minute, second) + timedelta(seconds=float(f"0.{match[7] or 0}"))
     except (ValueError, OverflowError):
         return None
-
-
-_CLOCK = re.compile(
-    r"(?:(?P<day>\d{1,2})\.(?P<month>\d{1,2})\.(?P<year>\d{4})[ T]+|(?P<iso>\d{4}-\d{2}-\d{2})[ T]+)?"
-    r"(?P<h>\d{1,2}):(?P<m>\d{2}):(?P<s>\d{2}(?:[.,]\d{1,9})?)Z?",
-    re.ASCII,
-)
-_DAY = 86400.0  # s
-
-
-def stamped_seconds(cells: Sequence[str]) -> Floats | None:
-    """Seconds since the first of time stamps, with or without a date; None where a cell is none.
-
-    Without a date the clock of a day goes on after midnight.
-    """
-    stamps = [_CLOCK.fullmatch(cell.strip()) for cell in cells]
-    days = [None if stamp is None else _day(stamp) for stamp in stamps]
-    if not cells or None in days:
-        return None
-    clock = np.array([_seconds_of_day(stamp) for stamp in stamps if stamp is not None])
-    passed = np.array(days, dtype=np.float64) - float(days[0] or 0)
-    passed += np.cumsum((np.diff(clock + _DAY * passed, prepend=clock[0]) < -_DAY / 2) & (passed == 0))
-    return np.asarray(clock - clock[0] + _DAY * passed)
-
-
-def _day(stamp: re.Match[str]) -> int | None:
-    """Number of the day of a time stamp, 0 without a date; None for a date that does not exist."""
-    try:
-        if stamp["iso"]:
-            return date.fromisoformat(stamp["iso"]).toordinal()
-        return date(int(stamp["year"]), int(stamp["month"]), int(stamp["day"])).toordinal() if stamp["day"] else 0
-    except ValueError:
-        return None
-
-
-def _seconds_of_day(stamp: re.Match[str]) -> float:
-    """Seconds of a time stamp since midnight."""
-    return 3600.0 * int(stamp["h"]) + 60.0 * int(stamp["m"]) + float(stamp["s"].replace(",", "."))
 
 
 def time_shifts(times: Sequence[Floats], starts: Sequence[datetime | None]) -> tuple[list[float], bool]:

@@ -5,7 +5,6 @@ Caveats name samples far beyond all others of their channel, as a lost bit leave
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from functools import cache
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,9 +15,11 @@ from sonolube import __version__
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.channels_and_parts import (
+    FRICTION,
     TIME_LABELS,
     ChannelEntry,
     chosen_channels,
+    friction_headings,
     name_and_unit,
     require_common_length,
 )
@@ -42,7 +43,6 @@ _REACH = 20.0  # distance from the median over the largest of all other samples
 _FEWEST = 20  # samples of a channel of which one can be judged
 _STANDS = 0.02  # of the samples at one end of the range, from which a channel is saturated
 _VALUES = 50  # different ones, from which a channel is neither switched nor coarse
-_FRICTION = frozenset({"friction_force", "friction_coefficient"})
 _VELOCITY, _SPEEDS = "relative_velocity", ("sliding_speed", "rotation_speed")
 _SAME_SIGN = 0.2  # of the larger end of a range, up to which the other one is noise or an error of the zero
 _SET_POINT = "_set"  # end of the names of set points, which are unknown before they are set
@@ -60,7 +60,8 @@ def damaged_sample_caveats(name: str, values: Floats, *, unit: str, axis: Floats
         return ()
     with np.errstate(over="ignore"):
         distance = np.abs(values[known] - np.median(values[known]))
-    ordered = np.sort(distance)
+    last = min(_MOST + 1, distance.size)
+    ordered = np.sort(np.partition(distance, -last)[-last:])
     count = next((k for k in range(1, _MOST + 1) if ordered[-k] > _REACH * ordered[-k - 1] > 0), 0)
     if not count:
         return ()
@@ -116,7 +117,9 @@ def recording_dataset(
     """Recording assembled from the columns of a file."""
     import xarray as xr
 
-    if mapping is not None:
+    if mapping is None:
+        table = _without_structure(table)
+    else:
         table = _selected(table, mapping, path)
         mapping = mapping.for_labels([column.label for column in table.columns])
     if not partial and (mapping is None or (mapping.axis, mapping.sample_rate) == (None, None)):
@@ -186,7 +189,7 @@ def _with_friction_positive(variables: _Variables) -> tuple[_Variables, list[str
     if _VELOCITY in variables or any(map(_of_both_signs, speeds)):
         return variables, []
     changed, caveats = dict(variables), []
-    for name in _FRICTION & variables.keys():
+    for name in set(FRICTION) & variables.keys():
         axis, values, attributes = variables[name]
         low, high = _ends(values)
         if np.count_nonzero(np.isfinite(values)) >= _FEWEST and low < 0 and high < _SAME_SIGN * -low:
@@ -235,6 +238,16 @@ def _damaged(
             *saturation_caveat(name, values, unit=str(attributes["units"])),
         )
     ]
+
+
+def _without_structure(table: RawTable) -> RawTable:
+    """Table whose labels are those of the fields, where all columns are fields of one structure."""
+    parts = [column.label.rpartition(".") for column in table.columns]
+    if len({structure for structure, _, _ in parts}) > 1 or not all(point for _, point, _ in parts):
+        return table
+    return replace(
+        table, columns=tuple(replace(each, label=part[2]) for each, part in zip(table.columns, parts, strict=True))
+    )
 
 
 def _selected(table: RawTable, mapping: RecordingMapping, path: Path) -> RawTable:
@@ -302,13 +315,7 @@ def _channel_sources(
 def _name_and_unit(column: RawColumn) -> tuple[str, str | None]:
     """Name of a channel from the label of its column, and the unit stated for it."""
     name, unit = name_and_unit(column.label)
-    return _friction_words().get(name, name), column.unit if column.unit is not None else unit
-
-
-@cache
-def _friction_words() -> Mapping[str, str]:
-    """Quantity of friction by each other heading that the vocabulary has for it, as a name of a channel."""
-    return {name_and_unit(word)[0]: quantity for quantity in _FRICTION for word in quantities()[quantity].also}
+    return friction_headings().get(name, name), column.unit if column.unit is not None else unit
 
 
 def _channel(
@@ -380,8 +387,10 @@ def _axis(
 
 def _unrounded(time: Floats) -> Floats | None:
     """Even times of a clock that was rounded to coarser steps than its samples; None where it was not."""
+    if time.size <= _FEWEST or np.all(time[1:] > time[:-1]):
+        return None
     steps = np.diff(time)
-    if steps.size < _FEWEST or np.all(steps > 0) or np.any(steps < 0) or not np.any(steps > 0):
+    if np.any(steps < 0) or not np.any(steps > 0):
         return None
     slope, start = np.polyfit(np.arange(time.size), time, 1)
     even = start + slope * np.arange(time.size)
@@ -415,7 +424,7 @@ def _axis_column(column: RawColumn, table: RawTable, path: Path, quantity: str, 
 
 def require_increasing_axis(axis: Floats, *, quantity: str, path: Path, place: Callable[[int], str]) -> None:
     """Refuse an axis that does not increase."""
-    wrong = np.diff(axis) <= 0
+    wrong = axis[1:] <= axis[:-1]
     if wrong.any():
         row = int(np.argmax(wrong)) + 1
         fault = "repeats" if axis[row] == axis[row - 1] else "decreases to"
@@ -443,8 +452,8 @@ def _attributes(
     if table.incomplete:
         attributes["incomplete"] = "the file ends before the data it announces"
     if time is not None and time.size > 1:
-        interval = float(np.median(np.diff(time)))
-        steps = np.diff(time) / interval
+        steps = np.diff(time)
+        interval = float(np.median(steps))
         attributes["sample_rate"] = 1 / interval
-        attributes["dropped_samples"] = int(np.sum(np.round(steps[steps > 1.5]) - 1))
+        attributes["dropped_samples"] = int(np.sum(np.round(steps[steps > 1.5 * interval] / interval) - 1))
     return attributes

@@ -151,6 +151,8 @@ class TextLayout:
         Format of that date and time, as `datetime.strptime` reads it.
     ends_at_blank_line : bool
         Whether a table ends at the first blank line after a row of data; what follows it is not read.
+    has_labels : bool
+        Whether a line of labels stands above the rows; without one columns are called "column 1", "column 2", ...
 
     Raises
     ------
@@ -171,6 +173,7 @@ class TextLayout:
     section_start: str = ""
     section_start_format: str = ""
     ends_at_blank_line: bool = False
+    has_labels: bool = True
 
     def __post_init__(self) -> None:
         for setting in fields(self):

@@ -10,6 +10,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from types import MappingProxyType
@@ -20,7 +21,7 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, SonolubeError, suggestion
-from sonolube.text.units import convert
+from sonolube.text.units import COMMON_FACTORS, convert
 
 _MAX_LISTED_COLUMNS = 12
 
@@ -67,6 +68,17 @@ _WRITTEN: dict[str, Any] = tomllib.loads(
 )
 _SPELLINGS = {text: (float(factor), str(unit)) for text, (factor, unit) in _WRITTEN["spellings"].items()}
 _OTHER_MEANINGS = {text: tuple(map(tuple, meanings)) for text, meanings in _WRITTEN["other_meanings"].items()}
+
+
+@cache
+def _units() -> frozenset[str]:
+    """Units of quantities as they are written."""
+    return frozenset({*COMMON_FACTORS, *(unit for factors in COMMON_FACTORS.values() for unit in factors), "%"} - {""})
+
+
+def is_written_unit(text: str) -> bool:
+    """Whether a text is a unit of a channel as instruments write it."""
+    return text in _units() or text in _OTHER_MEANINGS or text.lower() in _SPELLINGS
 
 
 def convert_to_si(values: Floats, *, written_unit: str, unit: str, name: str) -> Floats:

@@ -4,8 +4,9 @@ Delimited text is CSV and the exports of tribometer software; an LVM file has a 
 with a header and columns of its own.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import ClassVar, final
 
@@ -13,13 +14,9 @@ import numpy as np
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_files import detected_decimal_sign, first_lines, parse_number, require_channels
-from sonolube.measurement.recordings.channels_and_parts import (
-    TIME_LABELS,
-    begun_at,
-    name_and_unit,
-    stamped_seconds,
-    time_shifts,
-)
+from sonolube.measurement.recordings.channels_and_parts import TIME_LABELS, begun_at, name_and_unit, time_shifts
+from sonolube.measurement.recordings.clocks import STATED, clock_of_rows, stated_clock
+from sonolube.measurement.recordings.large_text import ends_of_large_text, numbers_of_large_text
 from sonolube.measurement.recordings.lvm_segments import Header, LvmSegment, joined_segments
 from sonolube.measurement.recordings.mapping import RecordingMapping, TextLayout
 from sonolube.measurement.recordings.raw_table import (
@@ -29,9 +26,9 @@ from sonolube.measurement.recordings.raw_table import (
     numbered_labels,
     si_conversion,
 )
+from sonolube.measurement.recordings.table_layout import with_found_layout
 from sonolube.measurement.recordings.text_tables import (
     TextTable,
-    below_preamble,
     column_values,
     decoded_text,
     is_text,
@@ -39,6 +36,7 @@ from sonolube.measurement.recordings.text_tables import (
     text_tables,
 )
 
+_MAX_NAMED = 12  # columns in a caveat
 _UTF_16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 
 
@@ -65,13 +63,17 @@ class DelimitedText:
         their stated starts where the times restart.
         """
         layout = mapping.text if mapping else TextLayout()
+        if (large := _large_table(path, mapping)) is not None:
+            return large
         text, caveats = decoded_text(path, encoding=layout.encoding)
-        layout = below_preamble(text, layout)
+        text, layout, left_out = with_found_layout(text, layout)
         tables = text_tables(text, layout, mapping.selection.sections if mapping else (), path)
         sign = layout.decimal_sign or _detected_decimal_sign(tables)
-        parts = [_part(table, mapping, sign, frozenset(layout.missing), path) for table in tables]
+        read = [_part(table, mapping, sign, frozenset(layout.missing), path) for table in tables]
+        parts, unused = [columns for columns, _ in read], read[0][1]
         _require_same_columns(tables, parts, path)
         columns, assumed = _joined(tables, parts, mapping, path)
+        caveats += left_out + _left_out_caveat(unused)
         unread = sum(table.unread for table in tables)
         if unread:
             caveats += (f"{unread} lines after the end of a table are not read",)
@@ -86,6 +88,40 @@ class DelimitedText:
         )
 
 
+def _large_table(path: Path, mapping: RecordingMapping | None) -> RawTable | None:
+    """Columns of a large text whose rows are all alike; None for any other."""
+    layout = mapping.text if mapping else TextLayout()
+    if layout != TextLayout() or (mapping and (mapping.rows or mapping.selection.sections)):
+        return None
+    ends = ends_of_large_text(path)
+    if ends is None:
+        return None
+    text, found, caveats = with_found_layout(ends, layout)
+    if caveats or not found.has_labels or text != ends:
+        return None
+    table = text_tables(text, found, (), path)[0]
+    sign = _detected_decimal_sign([table])
+    missing = frozenset(layout.missing)
+    try:
+        columns, unused = _part(table, mapping, sign, missing, path)
+    except InvalidInput:
+        return None
+    places = {label: at for at, label in enumerate(numbered_labels(table.labels))}
+    labels = numbered_labels([column.label for column in columns])
+    if not all(label in places for label in labels):
+        return None
+    chosen = [places[label] for label in labels]
+    numbers = numbers_of_large_text(path, table, chosen, decimal_sign=sign, missing=missing)
+    if numbers is None:
+        return None
+    return RawTable(
+        columns=tuple(replace(column, values=values) for column, values in zip(columns, numbers, strict=True)),
+        format_name=DelimitedText.name,
+        lines=table.rows[0][0] + np.arange(numbers[0].size),
+        caveats=_left_out_caveat(unused),
+    )
+
+
 def _detected_decimal_sign(tables: Sequence[TextTable]) -> str:
     """Decimal sign of the numbers; a point where cells are separated by commas."""
     if tables[0].separator == ",":
@@ -95,36 +131,75 @@ def _detected_decimal_sign(tables: Sequence[TextTable]) -> str:
 
 def _part(
     table: TextTable, mapping: RecordingMapping | None, sign: str, missing: frozenset[str], path: Path
-) -> list[RawColumn]:
-    """Columns of one table: those that the mapping requests, or all numeric ones."""
+) -> tuple[list[RawColumn], list[str]]:
+    """Columns of one table, those that the mapping requests or all numeric ones, with the times; labels of no use."""
     require_rows(table, mapping.rows if mapping else {}, path)
-    indices = {label: index for index, label in enumerate(numbered_labels(table.labels))}
+    read = partial(_numbers, table, sign=sign, missing=missing, path=path)
     requested = _requested_labels(mapping, table.labels)
-    columns = []
-    for place, label in enumerate(table.labels if requested is None else requested):
-        index = place if requested is None else column_of_label(indices, label, path)
-        if requested is None and (not label or is_text(table.rows, index, sign, missing)):
-            seconds = stamped_seconds([cells[index] if index < len(cells) else "" for _, cells in table.rows])
-            if seconds is not None and not any(
-                name_and_unit(each)[0] in TIME_LABELS for each in table.labels if each != label
-            ):
-                columns.append(RawColumn(label="time", values=seconds, unit="s"))
-            continue
-        values = column_values(table.rows, index, label, sign, missing, path)
-        unit = table.units[index] if index < len(table.units) else ""
-        columns.append(RawColumn(label=label, values=values, unit=unit or None))
+    if requested is None:
+        numeric = [at for at, label in enumerate(table.labels) if label and not is_text(table.rows, at, sign, missing)]
+        columns = [read(at, label=table.labels[at]) for at in numeric]
+    else:
+        places = {label: at for at, label in enumerate(numbered_labels(table.labels))}
+        columns = [read(column_of_label(places, label, path), label=label) for label in requested]
+    used = {column.label for column in columns}
+    if (mapping is None or (mapping.axis, mapping.sample_rate) == (None, None)) and not any(map(_is_time, used)):
+        columns, labels = _with_times(table, columns, read)
+        used.update(labels)
     if not columns:
         raise InvalidInput(f"{path}: line {table.rows[0][0]}: no column holds numbers")
-    return columns
+    return columns, [] if requested is not None else [label for label in table.labels if label and label not in used]
 
 
-def _clock(table: TextTable, index: int) -> list[RawColumn]:
-    """Time by a column of time stamps, where no other column has the time."""
-    others = (label for place, label in enumerate(table.labels) if place != index)
-    if any(name_and_unit(label)[0] in TIME_LABELS for label in others):
-        return []
-    seconds = stamped_seconds([cells[index] if index < len(cells) else "" for _, cells in table.rows])
-    return [] if seconds is None else [RawColumn(label="time", values=seconds, unit="s")]
+def _numbers(table: TextTable, place: int, *, label: str, sign: str, missing: frozenset[str], path: Path) -> RawColumn:
+    """Column of numbers with its unit."""
+    unit = table.units[place] if place < len(table.units) else ""
+    return RawColumn(
+        label=label, values=column_values(table.rows, place, label, sign, missing, path), unit=unit or None
+    )
+
+
+def _with_times(
+    table: TextTable, columns: list[RawColumn], read: Callable[..., RawColumn]
+) -> tuple[list[RawColumn], Sequence[str]]:
+    """Columns with the times of the rows: by time stamps, a label, a stated start and step, or the only unit of time.
+
+    With the labels of the times.
+    """
+    if (clock := clock_of_rows(table)) is not None:
+        return [clock.times, *columns], clock.labels
+    if (labelled := next((at for at, label in enumerate(table.labels) if _is_time(label)), None)) is not None:
+        return [read(labelled, label=table.labels[labelled]), *columns], ()
+    if (stated := stated_clock(table)) is not None:
+        channels = [column for column in columns if not np.all(np.diff(column.values) == 1.0)]  # but the sequence
+        return [replace(column, start=stated[0], interval=stated[1]) for column in channels], STATED
+    by_unit = [at for at, label in enumerate(table.labels) if _has_unit_of_time(label, table.units[at : at + 1])]
+    if len(by_unit) != 1:
+        return columns, ()
+    label = table.labels[by_unit[0]]
+    time = read(by_unit[0], label="time")
+    time = replace(time, unit=time.unit or name_and_unit(label)[1])
+    return [time, *(column for column in columns if column.label != label)], ()
+
+
+def _is_time(label: str) -> bool:
+    """Whether a label is one of times."""
+    return name_and_unit(label)[0] in TIME_LABELS
+
+
+def _has_unit_of_time(label: str, units: Sequence[str]) -> bool:
+    """Whether the unit of a column is one of time."""
+    unit = next(iter(units), "") or name_and_unit(label)[1]
+    try:
+        return bool(unit) and si_conversion(unit, unit="s", name=label)[0] > 0
+    except InvalidInput:
+        return False
+
+
+def _left_out_caveat(labels: Sequence[str]) -> tuple[str, ...]:
+    """Caveat about columns that hold neither numbers nor times."""
+    named = ", ".join(map(repr, labels[:_MAX_NAMED])) + (", ..." if len(labels) > _MAX_NAMED else "")
+    return (f"{'column' if len(labels) == 1 else 'columns'} without numbers left out: {named}",) if labels else ()
 
 
 def _requested_labels(mapping: RecordingMapping | None, labels: list[str]) -> list[str] | None:

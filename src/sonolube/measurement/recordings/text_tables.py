@@ -8,13 +8,19 @@ import csv
 import io
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.measured_files import parse_number, parse_numbers, refuse_unreadable, require_channels
+from sonolube.measurement.measured_files import (
+    parse_grouped,
+    parse_number,
+    parse_numbers,
+    refuse_unreadable,
+    require_channels,
+)
 from sonolube.measurement.recordings.mapping import TextLayout
 from sonolube.measurement.recordings.raw_table import column_of_label, numbered_labels, one_line
 from sonolube.storage.user_files import input_bytes
@@ -77,14 +83,11 @@ def is_text(rows: Sequence[NumberedCells], index: int, decimal_sign: str, missin
     for _, row in rows:
         text = row[index].strip() if index < len(row) else ""
         if text and text not in missing:
-            return parse_number(text, decimal_sign=decimal_sign) is None
+            return all(parse(text, decimal_sign=decimal_sign) is None for parse in (parse_number, parse_grouped))
     return True
 
 
 _SEPARATORS = "\t;,|"
-_FEWEST_LINES = 8  # of a file in which a preamble is sought
-_LONGEST_PREAMBLE = 400  # lines
-_LOOKED_AT = 1 << 16  # characters of the beginning and of the middle of a file
 _MAX_LISTED = 12
 
 
@@ -188,14 +191,14 @@ def _table(
     separator = layout.separator or _detected_separator(lines[header : header + 1])
     rows = _rows(lines, header, end, separator, layout, path)
     line, cells = _next_row(rows, header + 1)
-    is_headless = len(cells) > 1 and all(_is_number(cell) for cell in cells)
+    is_headless = not layout.has_labels or (len(cells) > 1 and all(_is_number(cell) for cell in cells))
     labels = [f"column {place}" if is_headless else one_line(label) for place, label in enumerate(cells, start=1)]
     while labels and not labels[-1]:
         labels.pop()
     if not labels:
         raise InvalidInput(f"{path}: line {line}: no column names")
     require_channels(len(labels), path, kind="columns")
-    units = [one_line(cell) for cell in _next_row(rows, line + 1)[1]] if layout.units_row else []
+    units = [_unit(cell) for cell in _next_row(rows, line + 1)[1]] if layout.units_row else []
     body, unread = _body(rows, len(labels), path, allows_short_rows)
     if is_headless:
         body.insert(0, (line, cells))
@@ -233,30 +236,10 @@ def _is_number(cell: str) -> bool:
     return any(parse_number(cell, decimal_sign=sign) is not None for sign in ".,")
 
 
-def below_preamble(text: str, layout: TextLayout) -> TextLayout:
-    """Layout of an export without one of its own, with the lines of a preamble before the labels to skip.
-
-    The labels are the last line of as many cells as the rows of the middle of the file have before the first row of
-    numbers. Where the first line has as many cells, or nothing is found, the layout stays.
-    """
-    lines = text[:_LOOKED_AT].splitlines()[:_LONGEST_PREAMBLE]
-    filled = [line for line in lines if line.strip()]
-    if layout != TextLayout() or len(filled) < _FEWEST_LINES:
-        return layout
-    half = len(text) // 2
-    middle = [line for line in text[half : half + _LOOKED_AT].splitlines()[1:-1] if line.strip()][:3] or filled[-3:]
-    for separator in _SEPARATORS:
-        widths = {line.count(separator) for line in middle}
-        if len(widths) != 1 or not (width := widths.pop()) or filled[0].count(separator) == width:
-            continue
-        rows = [(at, line.split(separator)) for at, line in enumerate(lines)]
-        wide = [(at, cells) for at, cells in rows if len(cells) == width + 1]
-        numbers = next(
-            (place for place, (_, cells) in enumerate(wide) if sum(map(_is_number, cells)) > width / 2), None
-        )
-        if numbers:
-            return replace(layout, lines_to_skip=wide[numbers - 1][0], separator=separator)
-    return layout
+def _unit(cell: str) -> str:
+    """Unit of a cell, without brackets around all of it."""
+    text = one_line(cell)
+    return text[1:-1].strip() if text[:1] + text[-1:] in ("[]", "()") else text
 
 
 def _next_row(rows: Iterator[NumberedCells | None], line: int) -> NumberedCells:
