@@ -24,9 +24,9 @@ from sonolube.measurement.measured_files import (
     refuse_unreadable,
 )
 from sonolube.measurement.recordings.dataset import recording_dataset, require_increasing_axis
-from sonolube.measurement.recordings.mapping import RecordingMapping, read_mapping
+from sonolube.measurement.recordings.mapping import RecordingMapping, mapping_toml, read_mapping
 from sonolube.measurement.recordings.raw_table import RawTable, recorded_warnings
-from sonolube.storage.files import write_atomically
+from sonolube.storage.files import user_state_folder, write_atomically
 from sonolube.storage.user_files import open_input, require_file
 from sonolube.variants import VariantTable
 
@@ -126,8 +126,56 @@ def instrument_mappings() -> dict[str, RecordingMapping]:
     return {path.stem: read_mapping(path) for path in sorted(_FOLDER.glob("*.toml"))}
 
 
+_RECIPES = "instruments"
+
+
+def recipe_folders(beside: Path) -> tuple[Path, ...]:
+    """Folders of recipes, the mappings of a user's instruments: one in the folder of a file, and one of the user."""
+    return beside.parent / _RECIPES, user_state_folder() / _RECIPES
+
+
+def recipes(beside: Path) -> dict[str, RecordingMapping]:
+    """Recipes by name that hold for a file, those in its folder before those of the user."""
+    found = [path for folder in recipe_folders(beside) if folder.is_dir() for path in sorted(folder.glob("*.toml"))]
+    return {path.stem: read_mapping(path) for path in reversed(found)}
+
+
+def keep_recipe(name: str, mapping: RecordingMapping, *, labels: str) -> Path:
+    """Keep a mapping of the user for all files with a line of labels.
+
+    Parameters
+    ----------
+    name : str
+        Of the instrument.
+    mapping : RecordingMapping
+    labels : str
+        Line of labels, by which files are recognised.
+
+    Returns
+    -------
+    Path
+        Of the recipe.
+
+    Raises
+    ------
+    InvalidInput
+        If the name is no name of a file or is that of a mapping of the package, or the line holds no words.
+    """
+    if not re.fullmatch(r"[\w-]{1,60}", name):
+        raise InvalidInput(f"a name of an instrument has letters, digits and hyphens, got {name[:60]!r}")
+    if name in instrument_mappings():
+        raise InvalidInput(f"{name} is a mapping of sonolube; choose another name")
+    line = labels.strip()
+    if not re.search(r"[^\W\d_]{2}", line):
+        raise InvalidInput(f"{line[:60]!r}: files are recognised by their labels, and these hold no words")
+    pattern = re.sub(r"[^\x00-\x7f]+", ".+?", re.escape(line))
+    text = replace(mapping.text, lines_to_skip=0)  # the lines above the labels differ from file to file
+    known = replace(mapping, name=name, text=text, recognised_by=rf"(?m)^\s*{pattern}\s*$")
+    return write_atomically(user_state_folder() / _RECIPES / f"{name}.toml", mapping_toml(known))
+
+
 def mapping_by_name(text: str) -> RecordingMapping:
-    """Mapping of the package by its name, or one from a file.
+    """Mapping of the package or a recipe by its name, or one from a file.
 
     Parameters
     ----------
@@ -143,24 +191,25 @@ def mapping_by_name(text: str) -> RecordingMapping:
     InvalidInput
         If it is neither a name nor a file that can be read, with the closest name or all of them.
     """
-    known = instrument_mappings()
+    path = Path(text)
+    if path.suffix == ".toml" or path.exists():
+        return read_mapping(path)
+    known = {**instrument_mappings(), **recipes(path)}
     if text in known:
         return known[text]
-    path = Path(text)
-    if not path.exists() and path.suffix != ".toml":
-        hint = suggestion(text, known) or f"mappings are {', '.join(known)}"
-        raise InvalidInput(f"{text}: no mapping of this name and no such file; {hint}")
-    return read_mapping(path)
+    hint = suggestion(text, known) or f"mappings are {', '.join(known)}"
+    raise InvalidInput(f"{text}: no mapping of this name and no such file; {hint}")
 
 
 def recognised_mapping(path: Path) -> RecordingMapping | None:
-    """Mapping of the package that fits a file by its beginning; None where none does."""
+    """Recipe, or mapping of the package, that fits a file by its beginning; None where none does."""
     head = read_head(path)
     encoding = "utf-16" if head[:2] in (b"\xff\xfe", b"\xfe\xff") else "latin-1"  # patterns are ASCII
     text = (
         head.removeprefix(b"\xef\xbb\xbf").decode(encoding, errors="ignore").replace("\r\n", "\n").replace("\r", "\n")
     )
-    fitting = (known for known in instrument_mappings().values() if known.recognised_by)
+    every = (*recipes(path).values(), *instrument_mappings().values())
+    fitting = (known for known in every if known.recognised_by)
     return next((known for known in fitting if re.search(known.recognised_by, text)), None)
 
 

@@ -189,7 +189,7 @@ def _is_time(label: str) -> bool:
 
 def _has_unit_of_time(label: str, units: Sequence[str]) -> bool:
     """Whether the unit of a column is one of time."""
-    unit = next(iter(units), "") or name_and_unit(label)[1]
+    unit = next(iter(units), "") or name_and_unit(label)[1] or ""
     try:
         return bool(unit) and si_conversion(unit, unit="s", name=label)[0] > 0
     except InvalidInput:
