@@ -16,7 +16,7 @@ from tests.same import approx
 from sonolube.charts import Axis, Line, one_panel
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.report import Drawing
-from sonolube.report.blocks import Block, Rows
+from sonolube.report.blocks import Block, Rows, Table
 from sonolube.tasks.answer import Answer, Listing, answer
 
 RIG: Any = SimpleNamespace(assumptions={"mass": "guessed", "load": "typical"})
@@ -137,3 +137,17 @@ def test_an_answer_by_itself_has_no_files_figures_pages_or_failures() -> None:
     )  # fmt: skip
     assert (found.page(), found.report(lambda *_: None), found.refusals()) == (None, None, {})
     assert (found.keeps("a", "b"), found.has_result, found.is_failure) == (False, True, False)
+
+
+def test_the_printed_table_is_a_table_of_pandas() -> None:
+    table = Table(("speed [m/s]", "what", "what"), [("0.1", "dry", ""), ("", "oil")])
+    frame = Own(content={}, parts=("Own result", Rows([("load", "3 N")]), table)).to_pandas()
+    assert list(frame.columns) == ["speed [m/s]", "what", "what"]
+    assert frame.iloc[:, 0].to_numpy() == approx([0.1, np.nan], nan_ok=True)
+    assert list(frame.iloc[:, 1]) == ["dry", "oil"]
+    assert list(Own(content={}).to_pandas().iloc[0]) == ["load", "3 N"]
+
+
+def test_an_answer_without_a_table_is_refused_as_one() -> None:
+    with raises(InvalidInput, match="Own result: this answer prints no table"):
+        Own(content={}, parts=("Own result",)).to_pandas()

@@ -22,6 +22,7 @@ from sonolube.vocabulary import si as si
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
+    from pandas import DataFrame
 
     from sonolube.report import Drawing, Page
     from sonolube.rig import Rig
@@ -159,6 +160,33 @@ class Answer(ABC):
         assumed = "\n".join(f"{key}: {reason}" for key, reason in self.assumptions().items())
         return {"caveats": "\n".join(self.every_caveat()), "assumptions": assumed}
 
+    def to_pandas(self) -> "DataFrame":
+        """Table of the answer as a terminal prints it: its first table, else its names and values.
+
+        Columns whose cells are all numbers, or empty, are numbers. All tables are in `dataset`.
+
+        Returns
+        -------
+        pandas.DataFrame
+
+        Raises
+        ------
+        InvalidInput
+            If the answer prints no table.
+        """
+        from pandas import DataFrame
+
+        shown = self.every_block()
+        table = next((each for each in shown if isinstance(each, Table)), None)
+        if table is None:
+            named = next((each for each in shown if isinstance(each, Rows)), None)
+            if named is None:
+                raise InvalidInput(f"{self.text().splitlines()[0]}: this answer prints no table")
+            table = Table(("name", "value"), [row[:2] for row in named.rows])
+        columns = [[row[place] if place < len(row) else "" for row in table.rows] for place in range(len(table.heads))]
+        frame = DataFrame({place: _numbers_or_texts(cells) for place, cells in enumerate(columns)})
+        return frame.set_axis(list(table.heads), axis="columns")
+
     def to_netcdf(self, path: str | Path) -> Path:
         """Write the dataset as a netCDF file, whole or not at all."""
         from sonolube.rig import write_netcdf
@@ -257,6 +285,14 @@ class Listing(Answer):
     def dataset(self) -> Dataset:
         """Table as a labelled dataset, with units."""
         return super().dataset() if self.labelled is None else self.labelled()
+
+
+def _numbers_or_texts(cells: Sequence[str]) -> Sequence[float] | Sequence[str]:
+    """Numbers of cells, NaN where one is empty; the cells where one is a text."""
+    try:
+        return [float(cell) if cell.strip() else float("nan") for cell in cells]
+    except ValueError:
+        return cells
 
 
 def _plain(name: str) -> str:
