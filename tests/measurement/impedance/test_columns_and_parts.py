@@ -7,8 +7,9 @@ import pytest
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
+from sonolube.measurement.impedance.headings import is_phase_without_unit, parse_heading
 from sonolube.measurement.impedance.instruments import Hp4294A, KeysightE4990A, Mfia
-from sonolube.measurement.impedance.named_columns import is_phase_without_unit, parse_heading, sweep_of_parts
+from sonolube.measurement.impedance.parts import sweep_of_parts
 from sonolube.measurement.impedance.spectrum import (
     ImpedanceSpectrum,
     ImpedanceSweep,
@@ -27,14 +28,30 @@ Y = 1 / Z  # 0.012 + 0.016j siemens
     ("pair", "values"),
     [
         (("R", "X"), (30.0, -40.0)),
-        (("R", "-X"), (30.0, 40.0)),
         (("|Z|", "theta_Z"), (50.0, np.arctan2(-40, 30))),
         (("G", "B"), (0.012, 0.016)),
         (("|Y|", "theta_Y"), (0.02, np.arctan2(40, 30))),
-        (("Ls", "Rs"), (-40 / OMEGA, 30.0)),
-        (("Cs", "Rs"), (1 / (40 * OMEGA), 30.0)),
+        (("|Z|", "theta"), (50.0, np.arctan2(-40, 30))),
+        (("|Z|", "theta_Y"), (50.0, np.arctan2(40, 30))),
+        (("|Y|", "theta"), (0.02, np.arctan2(40, 30))),
+        (("|Y|", "theta_Z"), (0.02, np.arctan2(-40, 30))),
+        (("Ls", "R"), (-40 / OMEGA, 30.0)),
+        (("Cs", "R"), (1 / (40 * OMEGA), 30.0)),
+        (("Cs", "D"), (1 / (40 * OMEGA), 0.75)),
+        (("Cs", "Q"), (1 / (40 * OMEGA), 4 / 3)),
+        (("Ls", "D"), (-40 / OMEGA, 0.75)),
+        (("Ls", "D"), (-40 / OMEGA, -0.75)),  # of the sign of the inductance
+        (("Ls", "Q"), (-40 / OMEGA, -4 / 3)),
         (("Lp", "Rp"), (-1 / (0.016 * OMEGA), 1 / 0.012)),
         (("Cp", "Rp"), (0.016 / OMEGA, 1 / 0.012)),
+        (("Cp", "G"), (0.016 / OMEGA, 0.012)),
+        (("Cp", "D"), (0.016 / OMEGA, 0.75)),
+        (("Cp", "Q"), (0.016 / OMEGA, 4 / 3)),
+        (("Lp", "G"), (-1 / (0.016 * OMEGA), 0.012)),
+        (("Lp", "D"), (-1 / (0.016 * OMEGA), 0.75)),
+        (("Lp", "D"), (-1 / (0.016 * OMEGA), -0.75)),
+        (("Lp", "Q"), (-1 / (0.016 * OMEGA), 4 / 3)),
+        (("Rp", "Xp"), (1 / 0.012, -1 / 0.016)),
     ],
 )
 def test_every_pair_of_parts_gives_the_impedance(pair: tuple[str, str], values: tuple[float, float]) -> None:
@@ -58,16 +75,18 @@ def test_a_magnitude_alone_has_no_phase() -> None:
     [
         ("Frequency (kHz)", "f", 1e3),
         ("freq. [MHz]", "f", 1e6),
-        ("phase (deg)", "theta_Z", np.pi / 180),
-        ("θ [°]", "theta_Z", np.pi / 180),
+        ("phase (deg)", "theta", np.pi / 180),
+        ("θ [°]", "theta", np.pi / 180),
+        ("Phase(Z)/deg", "theta_Z", np.pi / 180),
         ("theta-y (rad)", "theta_Y", 1.0),
         ("Cp (pF)", "Cp", 1e-12),
         ("Cs / nF", "Cs", 1e-9),
         ("Ls (µH)", "Ls", 1e-6),
         ("Rp (GOhm)", "Rp", 1e9),
         ("B (mS)", "B", 1e-3),
-        ("-Im(Z)", "-X", 1.0),
+        ("-Im(Z)", "X", -1.0),
         ("Z' / Ω", "R", 1.0),
+        ("omega (rad/s)", "f", 1 / (2 * np.pi)),
     ],
 )
 def test_a_heading_names_its_quantity_and_the_value_of_its_unit(text: str, symbol: str, scale: float) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 from pytest import approx, mark, raises, skip
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.measurement.impedance.named_columns import parse_heading
+from sonolube.measurement.impedance.headings import parse_heading
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum, read_impedance
 
 CORPUS = Path(__file__).parent / "corpus"

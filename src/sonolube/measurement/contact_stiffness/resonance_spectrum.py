@@ -10,7 +10,7 @@ import numpy as np
 
 from sonolube.checks import Complexes, Floats, require_finite_complex, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.impedance.named_columns import ColumnHeading, parse_heading
+from sonolube.measurement.impedance.headings import ColumnHeading, parse_heading
 from sonolube.measurement.impedance.spectrum import passive_spectrum, read_impedance, sweep_bytes
 from sonolube.measurement.measured_files import detected_decimal_sign, parse_number, require_points
 from sonolube.measurement.time_series import require_equal_length

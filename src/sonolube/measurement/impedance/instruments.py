@@ -9,12 +9,9 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.impedance.named_columns import (
-    ColumnHeading,
-    parse_heading,
-    sweep_from_columns,
-    sweep_of_parts,
-)
+from sonolube.measurement.impedance.headings import parse_heading
+from sonolube.measurement.impedance.named_columns import stated_reference, sweep_from_columns
+from sonolube.measurement.impedance.parts import sweep_of_parts
 from sonolube.measurement.impedance.spectrum import ImpedanceSweep
 from sonolube.measurement.measured_files import first_lines, parse_number, require_channels, require_points
 
@@ -156,17 +153,19 @@ class KeysightE4990A:
         split_labels = [label.strip().rpartition("-") for label in labels]
         sweeps = {}
         for sweep, suffix in (("data", "data"), ("memory", "mem")):
-            headings = [_trace_heading(text, kind, suffix) for text, _, kind in split_labels]
-            if sweep == "data" or sum(heading is not None for heading in headings) > 1:
-                sweeps[sweep] = sweep_from_columns(path, at, headings, rows[1:], decimal_sign=".")
+            own = [_trace_label(text, kind, suffix) for text, _, kind in split_labels]
+            of_kind = [label for label, (text, _, _) in zip(own, split_labels, strict=True) if text]
+            if sweep == "data" or any(parse_heading(label) for label in of_kind):
+                reference = stated_reference(lines[:at])
+                sweeps[sweep] = sweep_from_columns(path, at, own, rows[1:], decimal_sign=".", reference=reference)
         return sweeps
 
 
-def _trace_heading(text: str, kind: str, suffix: str) -> ColumnHeading | None:
-    """Heading of a column of one kind of trace, or of the frequency, whose label has no suffix."""
+def _trace_label(text: str, kind: str, suffix: str) -> str:
+    """Heading of a column of one kind of trace, or of the frequency, whose label has no suffix; empty for another."""
     if not text:
-        return parse_heading(kind)
-    return parse_heading(text) if kind.lower().startswith(suffix) else None
+        return kind
+    return text if kind.lower().startswith(suffix) else ""
 
 
 _LEADING_CELLS = 4  # cells before the values: chunk, timestamp, size, fieldname

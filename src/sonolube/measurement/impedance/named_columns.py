@@ -1,141 +1,72 @@
-"""Impedance in text tables whose first row names the columns: quantity and unit of each, and the sweep of them."""
+"""Impedance in text tables whose columns have headings: the table in its file, and the sweep of its columns."""
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from types import MappingProxyType
-from typing import ClassVar, NamedTuple, final
+from typing import ClassVar, Final, final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sonolube.checks import Complexes, Floats
 from sonolube.errors import InvalidInput
+from sonolube.measurement.impedance.headings import (
+    ColumnHeading,
+    is_phase_without_unit,
+    is_unit,
+    parse_heading,
+    phase_symbol,
+    unclear_heading,
+)
+from sonolube.measurement.impedance.parts import (
+    COMPLEX_PARTS,
+    MAGNITUDES,
+    impedance_of_complex,
+    pair_of,
+    sweep_of_parts,
+)
 from sonolube.measurement.impedance.spectrum import ImpedanceSweep
-from sonolube.measurement.measured_files import parse_number, require_channels
+from sonolube.measurement.measured_files import detected_decimal_sign, parse_number, require_channels
+from sonolube.measurement.recordings.mapping import TextLayout
+from sonolube.measurement.recordings.text_tables import SEPARATORS, NumberedCells, text_tables
 
-_LABELS = {
-    "f": ("frequency", "freq", "freq.", "f"),
-    "|Z|": ("|z|", "z", "abs(z)", "absz", "mag(z)", "zmod", "impedance"),
-    "theta_Z": ("theta-z", "theta", "phase", "phasez", "phase(z)", "arg(z)", "zphz", "θ"),
-    "R": ("r", "re(z)", "real(z)", "realz", "z'", "resistance"),
-    "X": ("x", "im(z)", "imag(z)", "imagz", "z''", "reactance"),
-    "-X": ("-im(z)", "-imag(z)", "-z''"),
-    "|Y|": ("|y|", "y", "abs(y)", "mag(y)", "admittance"),
-    "theta_Y": ("theta-y", "phase(y)", "arg(y)"),
-    "G": ("g", "re(y)", "real(y)", "conductance"),
-    "B": ("b", "im(y)", "imag(y)", "susceptance"),
-} | {symbol: (symbol.lower(),) for symbol in ("Ls", "Rs", "Cs", "Lp", "Rp", "Cp")}
-_SYMBOL = {label: symbol for symbol, labels in _LABELS.items() for label in labels}
-_DIMENSION = MappingProxyType(
-    {"f": "Hz", "|Y|": "S", "G": "S", "B": "S", "Ls": "H", "Lp": "H", "Cs": "F", "Cp": "F"}
-    | dict.fromkeys(("theta_Z", "theta_Y"), "rad")
+_LARGEST: Final = 1e30  # in any unit
+_COMMENTS: Final = ("#", "!", "%")
+_END: Final = re.compile(r"\s*END\b.*", re.IGNORECASE)
+_LONGEST_PREAMBLE: Final = 400  # lines
+_LOOKED_AT: Final = 50  # rows by which columns of complex numbers and the decimal sign are told
+_LOOKED_AT_CHARACTERS: Final = 1 << 16  # of lines that may be headings
+_BEGINS_WITH_NUMBER: Final = re.compile(r"[\s\"]*[-+]?[.,]?\d")
+_QUOTED: Final = 40  # characters of a heading in a message
+_FULL_TURN: Final = 2 * math.pi * 1.001
+
+_DIGITS: Final = r"\d+(?:[.,]\d*)?(?:[eE][-+]?\d+)?"
+_COMPLEX: Final = re.compile(
+    rf"\(?\s*(?P<re>[-+]?\s*{_DIGITS})\s*(?P<sign>[-+])\s*"
+    rf"(?:[ij]\s*\*?\s*(?P<im>{_DIGITS})|(?P<im_before>{_DIGITS})\s*\*?\s*[ij])\s*\)?"
 )
-_UNIT = re.compile(r"([pnuµμmkMG]?)(Hz|[Oo]hm|OHM|Ω|S|H|F|rad)")
-_PREFIX = {"": 1.0, "p": 1e-12, "n": 1e-9, "u": 1e-6, "µ": 1e-6, "μ": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}
-_LARGEST = 1e30  # in any unit
-_BRACKETED = re.compile(r"(.*\S)\s*[(\[]([^()\[\]]*)[)\]]")
-_DIVIDED = re.compile(r"(.*\S)\s*/\s*(\S+)")
-
-_IMPEDANCE: Mapping[tuple[str, str], Callable[[Floats, Floats, Floats], Floats | Complexes]] = MappingProxyType(
-    {
-        ("R", "X"): lambda w, r, x: r + 1j * x,
-        ("R", "-X"): lambda w, r, x: r - 1j * x,
-        ("|Z|", "theta_Z"): lambda w, z, theta: z * np.exp(1j * theta),
-        ("G", "B"): lambda w, g, b: 1 / (g + 1j * b),
-        ("|Y|", "theta_Y"): lambda w, y, theta: np.exp(-1j * theta) / y,
-        ("Ls", "Rs"): lambda w, inductance, r: r + 1j * w * inductance,
-        ("Cs", "Rs"): lambda w, c, r: r + 1 / (1j * w * c),
-        ("Lp", "Rp"): lambda w, inductance, r: 1 / (1 / r + 1 / (1j * w * inductance)),
-        ("Cp", "Rp"): lambda w, c, r: 1 / (1 / r + 1j * w * c),
-        ("|Z|", "|Z|"): lambda w, z, _: z,
-        ("|Y|", "|Y|"): lambda w, y, _: 1 / y,
-    }
+_POLAR: Final = re.compile(rf"(?P<abs>{_DIGITS})\s*(?:∠|@)\s*(?P<deg>[-+]?\s*{_DIGITS})\s*°?")
+_DECIMALS: Final = re.compile(r"\d+[.,]\d+")
+_REFERENCE: Final = re.compile(
+    r"(?:\bz_?0|\bz_?ref|\br_?ref|reference (?:impedance|resistance)|system (?:impedance|resistance)"
+    r"|port impedance|bezugs(?:widerstand|impedanz)|referenzimpedanz)\b[^\d\n]{0,20}?"
+    rf"(?P<value>{_DIGITS})\s*(?P<unit>[km]?)\s*(?:ohm|ω|Ω|$|[,;\s])",
+    re.IGNORECASE,
 )
-MAGNITUDES = (("|Z|", "|Z|"), ("|Y|", "|Y|"))
-"""Of `IMPEDANCE_PARTS` those that define the magnitude only."""
-IMPEDANCE_PARTS = tuple(_IMPEDANCE)
-"""Pairs of column symbols that define an impedance, in order of preference."""
-
-
-class ColumnHeading(NamedTuple):
-    """Quantity and unit of a column.
-
-    Parameters
-    ----------
-    symbol : str
-        Symbol of the quantity, such as ``f``, ``|Z|`` or ``theta_Z``.
-    scale : float
-        Value of the column's unit in SI.
-    """
-
-    symbol: str
-    scale: float
-
-
-def parse_heading(text: str) -> ColumnHeading | None:
-    """Quantity and unit in the heading of a column, or None where it is none of an impedance table.
-
-    See Also
-    --------
-    is_phase_without_unit : Why a heading may be None.
-    """
-    label = text.strip().strip('"').strip()
-    for split in (_BRACKETED, _DIVIDED):
-        if (found := split.fullmatch(label)) and (symbol := _SYMBOL.get(found[1].lower())):
-            scale = _unit_scale(found[2].strip(), _DIMENSION.get(symbol, "ohm"))
-            return ColumnHeading(symbol, scale) if scale is not None else None
-    symbol = _SYMBOL.get(label.lower(), "")
-    return ColumnHeading(symbol, 1.0) if symbol and not symbol.startswith("theta") else None
-
-
-def is_phase_without_unit(text: str) -> bool:
-    """Whether the heading of a column names a phase and states no unit, or one that is no angle."""
-    label = text.strip().strip('"').strip()
-    found = _BRACKETED.fullmatch(label) or _DIVIDED.fullmatch(label)
-    names_phase = _SYMBOL.get((found[1] if found else label).lower(), "").startswith("theta")
-    return names_phase and parse_heading(text) is None
-
-
-def sweep_of_parts(columns: Mapping[str, Floats], pair: tuple[str, str], *, lines: NDArray[np.int64]) -> ImpedanceSweep:
-    r"""Sweep over the column f from two real parts of impedance, admittance or an equivalent circuit.
-
-    Its impedance is not finite where the parts define no finite one.
-
-    With :math:`\omega = 2\pi f`: :math:`R + jX`, :math:`|Z| e^{j\theta}`, :math:`1/(G + jB)`, the series circuits
-    :math:`R_s + j\omega L_s` and :math:`R_s + 1/(j\omega C_s)`, and the parallel circuits
-    :math:`(1/R_p + 1/(j\omega L_p))^{-1}` and :math:`(1/R_p + j\omega C_p)^{-1}`.
-    """
-    first, second = pair
-    with np.errstate(all="ignore"):
-        omega = 2 * np.pi * columns["f"]
-        impedance = np.asarray(_IMPEDANCE[pair](omega, columns[first], columns[second]), dtype=np.complex128)
-    return ImpedanceSweep(frequency=columns["f"], impedance=impedance, lines=lines, has_phase=pair not in MAGNITUDES)
-
-
-def _unit_scale(unit: str, dimension: str) -> float | None:
-    """Value of a unit in SI, None where it is unknown or of another dimension."""
-    if unit.lower() in ("deg", "°", "degrees"):
-        return math.pi / 180 if dimension == "rad" else None
-    found = _UNIT.fullmatch(unit)
-    if not found or (found[2] if found[2].lower() not in ("ohm", "ω") else "ohm") != dimension:
-        return None
-    return _PREFIX[found[1]]
-
-
-_COMMENTS = ("#", "!", "%")
-
-NumberedCells = tuple[int, list[str]]  # line of a row, and its cells
+_REFERENCE_50: Final = 50.0  # ohm
+_SAME: Final = 1e-12  # relative difference of one number in two units
+_LONGEST_LIST: Final = 200  # characters of the headings that were read
 
 
 @final
 class NamedColumns:
-    """Any text table whose first row names the columns, such as `frequency (kHz)`, `|Z| (ohm)`, `phase (deg)`.
+    """Any text table whose columns have headings, such as `frequency (kHz)`, `|Z| (ohm)`, `phase (deg)`.
 
     Notes
     -----
-    Has no signature: the fallback for every text file.
+    Has no signature: the fallback for every text file. The headings are the first line that names a frequency and an
+    impedance; what stands before it is a preamble.
     """
 
     name: ClassVar[str] = "table with named columns"
@@ -147,72 +78,268 @@ class NamedColumns:
 
     def read(self, path: Path, lines: list[str]) -> dict[str, ImpedanceSweep]:
         """One sweep of a table, under an empty name."""
-        numbered = [(at, line) for at, line in enumerate(lines, 1) if line.strip() and not line.startswith(_COMMENTS)]
-        if not numbered:
-            raise InvalidInput(f"{path}: line {len(lines)}: holds no row")
-        separator = next((sign for sign in "\t;," if sign in numbered[0][1]), ",")
-        require_channels(numbered[0][1].count(separator) + 1, path, kind="columns")
-        rows = [(at, line.split(separator)) for at, line in numbered]
-        at, labels = rows[0]
-        decimal_sign = "," if separator != "," and any("," in cell for _, row in rows[1:9] for cell in row) else "."
-        headings = [parse_heading(label) for label in labels]
-        _require_units_of_phases(path, at, labels, headings)
-        return {"": sweep_from_columns(path, at, headings, rows[1:], decimal_sign=decimal_sign)}
+        kept = _without_comments(lines)
+        at, separator, has_units = _heading_line(path, kept, lines)
+        body = [*kept[:at], lines[at].lstrip("".join(_COMMENTS)), *kept[at + 1 :]]
+        layout = TextLayout(lines_to_skip=at, separator=separator, units_row=has_units)
+        (table,) = text_tables("\n".join(body), layout, (), path, allows_short_rows=True)
+        units = [*table.units, *("" for _ in table.labels)]
+        labels = [_with_unit(label, unit) for label, unit in zip(table.labels, units, strict=False)]
+        sign = "." if separator == "," else _decimal_sign(table.rows)
+        reference = stated_reference(lines[:at])
+        return {"": sweep_from_columns(path, table.line, labels, table.rows, decimal_sign=sign, reference=reference)}
 
 
-def _require_units_of_phases(path: Path, line: int, labels: list[str], headings: list[ColumnHeading | None]) -> None:
-    """Refuse a phase without unit where without it the table would define magnitudes only."""
-    symbols = {heading.symbol for heading in headings if heading}
-    complete = any({*pair} <= symbols for pair in IMPEDANCE_PARTS if pair not in MAGNITUDES)
-    label = next((label for label in labels if is_phase_without_unit(label)), None)
-    if label is not None and not complete:
-        raise InvalidInput(f"{path}: line {line}: {label.strip()[:40]!r} needs a unit, 'phase (deg)' or '(rad)'")
+def _without_comments(lines: list[str]) -> list[str]:
+    """Lines up to one that ends the data, comments emptied so that the others keep their numbers."""
+    end = next((at for at, line in enumerate(lines) if _END.fullmatch(line)), len(lines))
+    return ["" if line.startswith(_COMMENTS) else line for line in lines[:end]]
+
+
+def _heading_line(path: Path, kept: list[str], lines: list[str]) -> tuple[int, str, bool]:
+    """Place of the line of headings, separator of its cells, and whether a row of units follows it."""
+    for candidates in (kept, [line.lstrip("".join(_COMMENTS)) for line in lines[: len(kept)]]):
+        for at, line in _possible_headings(candidates):
+            for separator in (sign for sign in SEPARATORS if sign in line):
+                require_channels(line.count(separator) + 1, path, kind="columns")
+                labels = _cells(line, separator)
+                units = _unit_cells(kept[at + 1 :], separator)
+                joined = [_with_unit(label, unit) for label, unit in zip(labels, units, strict=False)] if units else []
+                for each in (joined, labels):
+                    if _is_complete(each):
+                        return at, separator, each is joined
+    raise InvalidInput(_reason_without_headings(path, kept))
+
+
+def _possible_headings(lines: Sequence[str]) -> Iterator[tuple[int, str]]:
+    """Yield place and text of the first lines that are not blank and do not begin with a number."""
+    characters = 0
+    for at, line in enumerate(lines[:_LONGEST_PREAMBLE]):
+        if line.strip() and not _BEGINS_WITH_NUMBER.match(line):
+            yield at, line
+            characters += len(line)
+            if characters > _LOOKED_AT_CHARACTERS:
+                return
+
+
+def _cells(line: str, separator: str) -> list[str]:
+    """Cells of a line of headings, without quotation marks."""
+    return [cell.strip().strip('"').strip() for cell in line.split(separator)]
+
+
+def _unit_cells(following: Sequence[str], separator: str) -> list[str]:
+    """Cells of the next line that is not blank, where they are units and nothing else; empty where they are not."""
+    row = next((line for line in following[:3] if line.strip()), "")
+    cells = _cells(row, separator)
+    filled = [cell for cell in cells if cell]
+    return cells if len(filled) > 1 and all(map(is_unit, filled)) else []
+
+
+def _with_unit(label: str, unit: str) -> str:
+    """Heading with the unit of the row below it."""
+    return f"{label} ({unit.strip(' ()[]')})" if unit.strip() else label
+
+
+def _is_complete(labels: Sequence[str]) -> bool:
+    """Whether headings name a frequency and an impedance."""
+    symbols = {heading.symbol for label in labels if (heading := parse_heading(label))}
+    return "f" in symbols and (pair_of(frozenset(symbols)) is not None or not symbols.isdisjoint(COMPLEX_PARTS))
+
+
+def _reason_without_headings(path: Path, kept: list[str]) -> str:
+    """Refusal of a file in which no line names frequency and impedance, with the readings of a heading that may."""
+    first = next((at for at, line in enumerate(kept) if line.strip()), None)
+    if first is None:
+        return f"{path}: line {len(kept)}: holds no row"
+    for at, line in _possible_headings(kept):
+        for separator in (sign for sign in SEPARATORS if sign in line):
+            labels = _cells(line, separator)
+            if any(heading.symbol == "f" for label in labels if (heading := parse_heading(label))):
+                unclear = ((label, unclear_heading(label)) for label in labels)
+                if found := next((each for each in unclear if each[1]), None):
+                    return f"{path}: line {at + 1}: {found[0][:_QUOTED]!r} {found[1]}"
+                first = at
+    return (
+        f"{path}: line {first + 1}: names no columns of frequency and impedance, such as"
+        " 'frequency (Hz)', '|Z| (ohm)', 'phase (deg)' or 'R (ohm)', 'X (ohm)'"
+    )
+
+
+def _decimal_sign(rows: Sequence[NumberedCells]) -> str:
+    """Decimal sign of the numbers in cells, those within complex numbers too."""
+    return detected_decimal_sign(_decimals_of(rows))
+
+
+def _decimals_of(rows: Sequence[NumberedCells]) -> Iterator[str]:
+    """Yield the numbers with a decimal sign."""
+    for _, cells in rows:
+        for cell in cells:
+            yield from _DECIMALS.findall(cell)
+
+
+def stated_reference(preamble: Sequence[str]) -> float | None:
+    """Reference impedance of reflection coefficients that the lines before the headings state. [ohm]"""
+    for line in preamble:
+        if found := _REFERENCE.search(line[:_LONGEST_PREAMBLE]):
+            scale = {"": 1.0, "k": 1e3, "m": 1e-3}[found["unit"].lower()]
+            value = scale * float(found["value"].replace(",", "."))
+            return value if value > 0 else None
+    return None
 
 
 def sweep_from_columns(
-    path: Path, heading_line: int, headings: list[ColumnHeading | None], rows: list[NumberedCells], *, decimal_sign: str
+    path: Path,
+    heading_line: int,
+    labels: Sequence[str],
+    rows: Sequence[NumberedCells],
+    *,
+    decimal_sign: str,
+    reference: float | None = None,
 ) -> ImpedanceSweep:
-    """Sweep of a table by the headings of its columns.
+    """Sweep of a table by the headings of its columns; an empty heading leaves its column out.
 
-    Of the first pair of `IMPEDANCE_PARTS` that the table has: the magnitude alone only where there is nothing else.
+    By a column of complex numbers, else by the first pair of `IMPEDANCE_PARTS` that the table has: the magnitude alone
+    only where there is nothing else.
     """
-    known = {heading.symbol for heading in headings if heading}
-    pair = next((pair for pair in IMPEDANCE_PARTS if all(part in known for part in pair)), None)
-    if "f" not in known or pair is None:
-        raise InvalidInput(
-            f"{path}: line {heading_line}: names no columns of frequency and impedance, such as"
-            " 'frequency (Hz)', '|Z| (ohm)', 'phase (deg)' or 'R (ohm)', 'X (ohm)'"
-        )
     if not rows:
         raise InvalidInput(f"{path}: line {heading_line}: no values follow")
-    columns = {}
-    for symbol in ("f", *pair):
-        several = {at: heading for at, heading in enumerate(headings) if heading and heading.symbol == symbol}
-        found = {at: _column(path, rows, at, heading, decimal_sign) for at, heading in several.items()}
-        columns[symbol], *others = found.values()
-        if not all(np.array_equal(columns[symbol], other) for other in others):
-            numbers = " and ".join(str(at + 1) for at in found)
+    table = _Columns(path, heading_line, labels, rows, decimal_sign, [parse_heading(label) for label in labels])
+    place = table.complex_place()
+    caveats: tuple[str, ...] = ()
+    if place is None and table.pair in (None, *MAGNITUDES):
+        table, caveats = table.with_phase_by_values()
+    if not table.places("f") or (place is None and table.pair is None):
+        raise InvalidInput(_reason_without_headings(path, [*[""] * (heading_line - 1), ";".join(labels)]))
+    lines = np.array([line for line, _ in rows])
+    frequency = table.values("f")
+    if place is not None:
+        symbols = ["f", table.symbol(place)]
+        impedance = impedance_of_complex(table.complex_values(place), symbols[1], reference=reference or _REFERENCE_50)
+        sweep = ImpedanceSweep(frequency=frequency, impedance=impedance, lines=lines)
+    else:
+        pair = table.pair or MAGNITUDES[0]
+        symbols = ["f", *dict.fromkeys(pair)]
+        columns = {"f": frequency} | {symbol: table.values(symbol) for symbol in symbols[1:]}
+        sweep = sweep_of_parts(columns, pair, lines=lines, reference=reference or _REFERENCE_50)
+    if reference is None and any("S" in symbol for symbol in symbols):
+        caveats += (
+            "the file does not state the reference impedance of its reflection coefficient, which was taken as 50 ohm",
+        )
+    read = ", ".join(labels[table.places(symbol)[0]] for symbol in symbols)
+    return replace(sweep, columns=read[:_LONGEST_LIST], caveats=caveats)
+
+
+@dataclass(frozen=True, slots=True)
+class _Columns:
+    """Rows of a table and the meaning of its columns."""
+
+    path: Path
+    line: int
+    labels: Sequence[str]
+    rows: Sequence[NumberedCells]
+    decimal_sign: str
+    headings: Sequence[ColumnHeading | None]
+
+    @property
+    def pair(self) -> tuple[str, str] | None:
+        """First pair of parts of an impedance."""
+        return pair_of(frozenset(heading.symbol for heading in self.headings if heading))
+
+    def places(self, symbol: str) -> list[int]:
+        """Columns of a quantity."""
+        return [at for at, heading in enumerate(self.headings) if heading and heading.symbol == symbol]
+
+    def symbol(self, place: int) -> str:
+        """Quantity of a column; empty where it is not known."""
+        heading = self.headings[place]
+        return heading.symbol if heading else ""
+
+    def complex_place(self) -> int | None:
+        """First column of an impedance, admittance or reflection whose cells are complex numbers."""
+        for symbol in COMPLEX_PARTS:
+            for place in self.places(symbol):
+                cells = [row[place].strip() for _, row in self.rows[:_LOOKED_AT] if place < len(row)]
+                if any(_complex_number(cell, self.decimal_sign) is not None for cell in cells):
+                    return place
+        return None
+
+    def complex_values(self, place: int) -> Complexes:
+        """Complex numbers of a column in SI."""
+        heading = self.headings[place]
+        numbers = [self._complex_cell(row, place) for row in self.rows]
+        return (heading.scale if heading else 1.0) * np.array(numbers, dtype=np.complex128)
+
+    def values(self, symbol: str) -> Floats:
+        """Numbers of a quantity in SI; refuse several columns of it that differ."""
+        found = {place: self._in_si(place) for place in self.places(symbol)}
+        first, *others = found.values()
+        if not all(np.allclose(first, other, rtol=_SAME, atol=0.0) for other in others):
+            numbers = " and ".join(str(place + 1) for place in found)
             raise InvalidInput(
-                f"{path}: line {heading_line}: columns {numbers} are all of {symbol} and differ; keep one of them"
+                f"{self.path}: line {self.line}: columns {numbers} are all of {symbol} and differ; keep one of them"
             )
-    return sweep_of_parts(columns, pair, lines=np.array([line for line, _ in rows]))
+        return first
+
+    def with_phase_by_values(self) -> "tuple[_Columns, tuple[str, ...]]":
+        """Table with a phase without unit in degrees where its numbers exceed a full turn in radians.
+
+        `caveats`: One where it was taken so. Refuses a phase whose numbers may be either.
+        """
+        place = next((at for at, label in enumerate(self.labels) if is_phase_without_unit(label)), None)
+        if place is None or not any(self.places(symbol) for symbol in COMPLEX_PARTS):
+            return self, ()
+        label = self.labels[place].strip()[:_QUOTED]
+        largest = float(np.max(np.abs([self._number(row, place) for row in self.rows])))
+        if not largest > _FULL_TURN:
+            raise InvalidInput(
+                f"{self.path}: line {self.line}: {label!r} needs a unit, 'phase (deg)' or '(rad)': its numbers of up to"
+                f" {largest:.4g} may be either"
+            )
+        heading = ColumnHeading(phase_symbol(label), math.pi / 180)
+        headings = [heading if at == place else each for at, each in enumerate(self.headings)]
+        caveat = f"{label!r} states no unit and was read in degrees, since its numbers reach {largest:.4g}"
+        return replace(self, headings=headings), (caveat,)
+
+    def _in_si(self, place: int) -> Floats:
+        """Numbers of one column in SI."""
+        heading = self.headings[place]
+        numbers = np.array([self._number(row, place) for row in self.rows])
+        with np.errstate(all="ignore"):
+            return np.asarray(heading.in_si(numbers) if heading else numbers)
+
+    def _number(self, row: NumberedCells, place: int) -> float:
+        """Number in one cell of a row; refuse a missing cell and what is no finite number."""
+        line, cell = self._cell(row, place)
+        value = parse_number(cell, decimal_sign=self.decimal_sign)
+        if value is None or not np.isfinite(value):
+            raise InvalidInput(f"{self.path}: line {line}: {cell.strip()[:_QUOTED]!r} is not a finite number")
+        if abs(value) > _LARGEST:
+            raise InvalidInput(f"{self.path}: line {line}: {cell.strip()[:_QUOTED]!r} lies beyond any instrument")
+        return value
+
+    def _complex_cell(self, row: NumberedCells, place: int) -> complex:
+        """Complex number in one cell of a row."""
+        line, cell = self._cell(row, place)
+        value = _complex_number(cell.strip(), self.decimal_sign)
+        if value is None or not abs(value) < _LARGEST:
+            raise InvalidInput(f"{self.path}: line {line}: {cell.strip()[:_QUOTED]!r} is not a complex number")
+        return value
+
+    def _cell(self, row: NumberedCells, place: int) -> tuple[int, str]:
+        """Line and text of one cell of a row; refuse a row that ends before it."""
+        line, cells = row
+        if place >= len(cells):
+            raise InvalidInput(f"{self.path}: line {line}: has {len(cells)} cells where column {place + 1} is required")
+        return line, cells[place]
 
 
-def _column(path: Path, rows: list[NumberedCells], at: int, heading: ColumnHeading, decimal_sign: str) -> Floats:
-    """Numbers of one column in SI."""
-    values = np.array([_finite_number(path, row, at, decimal_sign) for row in rows])
-    with np.errstate(all="ignore"):
-        return np.asarray(heading.scale * values)
-
-
-def _finite_number(path: Path, row: NumberedCells, at: int, decimal_sign: str) -> float:
-    """Number in one cell of a row; refuse a missing cell and what is no finite number."""
-    line, cells = row
-    if at >= len(cells):
-        raise InvalidInput(f"{path}: line {line}: has {len(cells)} cells where column {at + 1} is required")
-    value = parse_number(cells[at], decimal_sign=decimal_sign)
-    if value is None or not np.isfinite(value):
-        raise InvalidInput(f"{path}: line {line}: {cells[at].strip()[:40]!r} is not a finite number")
-    if abs(value) > _LARGEST:
-        raise InvalidInput(f"{path}: line {line}: {cells[at].strip()[:40]!r} lies beyond any instrument")
-    return value
+def _complex_number(cell: str, decimal_sign: str) -> complex | None:
+    """Complex number in a cell, as its parts or as magnitude and angle in degrees; None where it holds none."""
+    if found := _COMPLEX.fullmatch(cell):
+        parts = (found["re"].replace(" ", ""), found["im"] or found["im_before"])
+        first, second = (parse_number(part, decimal_sign=decimal_sign) for part in parts)
+        return None if first is None or second is None else complex(first, -second if found["sign"] == "-" else second)
+    if found := _POLAR.fullmatch(cell):
+        first, second = (parse_number(found[key].replace(" ", ""), decimal_sign=decimal_sign) for key in ("abs", "deg"))
+        return None if first is None or second is None else first * complex(np.exp(1j * math.radians(second)))
+    return None

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from sonolube.checks import Complexes, Floats, require_finite_complex, require_positive
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.measurement.measured_files import HEAD_SIZE, FileFormat, detect_format, refuse_unreadable, require_points
+from sonolube.measurement.recordings.text_tables import decoded_content
 from sonolube.measurement.time_series import require_equal_length
 from sonolube.storage.user_files import input_bytes
 from sonolube.variants import VariantTable
@@ -40,6 +41,8 @@ class ImpedanceSpectrum:
         Name of the format of that file.
     sha256 : str
         Digest of that file.
+    columns : str
+        Headings of the columns of that file that it was read from.
     caveats : tuple of str
         Of its reading.
 
@@ -67,6 +70,7 @@ class ImpedanceSpectrum:
     file_name: str = ""
     file_format: str = ""
     sha256: str = ""
+    columns: str = ""
     caveats: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
@@ -100,12 +104,18 @@ class ImpedanceSweep:
         Line number of each point in the file.
     has_phase : bool
         Whether the file holds the phase.
+    columns : str
+        Headings of the columns that it was read from; empty where the format has none.
+    caveats : tuple of str
+        What had to be assumed.
     """
 
     frequency: Floats
     impedance: Complexes
     lines: NDArray[np.int64]
     has_phase: bool = True
+    columns: str = ""
+    caveats: tuple[str, ...] = ()
 
 
 _LEAST, _MOST = 1e-12, 1e18  # ohm, beyond any instrument
@@ -121,7 +131,7 @@ def sorted_by_frequency(sweep: ImpedanceSweep, *, path: Path) -> ImpedanceSweep:
     usable = np.isfinite(z) & (np.abs(z) > _LEAST) & (np.abs(z) < _MOST)
     first = f"{abs(z[int(np.argmin(usable))]):g} ohm"
     _refuse(~usable, f"the impedance of {first} is none that an instrument reads", lines, path)
-    return ImpedanceSweep(frequency=f, impedance=z, lines=lines, has_phase=sweep.has_phase)
+    return replace(sweep, frequency=f, impedance=z, lines=lines)
 
 
 def _refuse(invalid: NDArray[np.bool_], reason: str, lines: NDArray[np.int64], path: Path) -> None:
@@ -239,7 +249,9 @@ def read_impedance(path: str | Path, *, sweep: str | None = None) -> ImpedanceSp
     """
     path = Path(path)
     content = sweep_bytes(path)
-    lines = _lines(content, path)
+    text, caveats = decoded_content(content, path)
+    lines = text_lines(text)
+    require_points(len(lines), path, line=len(lines))
     formats = tuple(IMPEDANCE_FORMATS.values())
     file_format = detect_format(formats, content[:HEAD_SIZE], path) or formats[-1]
     sweeps = file_format.read(path, lines)
@@ -253,6 +265,8 @@ def read_impedance(path: str | Path, *, sweep: str | None = None) -> ImpedanceSp
         file_name=path.name,
         file_format=file_format.name,
         sha256=hashlib.sha256(content).hexdigest(),
+        columns=selected.columns,
+        caveats=(*caveats, *selected.caveats),
     )
 
 
@@ -264,18 +278,9 @@ def sweep_bytes(path: Path) -> bytes:
         return input_bytes(path, most=_LARGEST_FILE)
 
 
-def _lines(content: bytes, path: Path) -> list[str]:
-    """Lines of a text file."""
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError as failure:
-        line = content[: failure.start].count(b"\n") + 1
-        raise InvalidInput(f"{path}: line {line}: is not UTF-8 text") from None
-    if not text.strip():
-        raise InvalidInput(f"{path}: is empty")
-    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    require_points(len(lines), path, line=len(lines))
-    return lines
+def text_lines(text: str) -> list[str]:
+    """Lines of a text, whatever ends them."""
+    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
 def _selected_name(path: Path, sweeps: Mapping[str, ImpedanceSweep], requested: str | None) -> str:

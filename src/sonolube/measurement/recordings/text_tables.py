@@ -36,6 +36,11 @@ def decoded_text(path: Path, *, encoding: str) -> tuple[str, tuple[str, ...]]:
     """
     with refuse_unreadable(path):
         content = input_bytes(path)
+    return decoded_content(content, path, encoding=encoding)
+
+
+def decoded_content(content: bytes, path: Path, *, encoding: str = "") -> tuple[str, tuple[str, ...]]:
+    """Text of the bytes of a file as `decoded_text` decodes them."""
     marked = next((name for mark, name in _MARKS if content.startswith(mark)), "utf-8")
     text = _decoded(content, encoding or marked, path, refuse=bool(encoding) or marked != "utf-8")
     caveats: tuple[str, ...] = ()
@@ -87,7 +92,9 @@ def is_text(rows: Sequence[NumberedCells], index: int, decimal_sign: str, missin
     return True
 
 
-_SEPARATORS = "\t;,|"
+SEPARATORS = "\t;,|"
+"""Between the cells of a row; the first ones are preferred."""
+
 _MAX_LISTED = 12
 
 
@@ -250,7 +257,7 @@ def _next_row(rows: Iterator[NumberedCells | None], line: int) -> NumberedCells:
 def _detected_separator(lines: list[str]) -> str:
     """Separator that occurs most often in the line of labels."""
     line = lines[0] if lines else ""
-    return max(_SEPARATORS, key=lambda separator: (line.count(separator), -_SEPARATORS.index(separator)))
+    return max(SEPARATORS, key=lambda separator: (line.count(separator), -SEPARATORS.index(separator)))
 
 
 def _rows(

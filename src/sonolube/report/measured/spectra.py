@@ -261,6 +261,7 @@ def impedance_sheet(path: Path, *, settings: ImpedanceSettings) -> sheet.Sheet:
     source = {
         "format": spectrum.file_format,
         "sweep": spectrum.sweep,
+        "columns": spectrum.columns,
         "points": f"{frequency.size}, {ends}",
         "residual": residual_for(spectrum, settings.residual),
         "sha256": spectrum.sha256,
