@@ -729,6 +729,7 @@ MODES = {
             "--branches": "2",
             "--residual": "linear-magnitude",
             "--series-resistance": "3ohm",
+            "--circuit": "leads",
             "--sweep": "memory",
             "--stack-of": RIG,
         }
@@ -737,7 +738,7 @@ MODES = {
     "impedance of a stack": Mode(
         "measure impedance",
         ("FOLDER/spectrum.csv", "--stack-of", RIG),
-        {"--branches": "2", "--series-resistance": "3ohm"},
+        {"--branches": "2", "--series-resistance": "3ohm", "--circuit": "loss"},
     ),
     "vibration": Mode(
         "measure vibration",

@@ -91,7 +91,11 @@ def test_the_phase_that_belongs_to_a_magnitude_is_that_of_the_circuit() -> None:
     assert np.sqrt(np.mean(np.angle(found / true) ** 2)) < 0.2  # rad
 
 
-def test_a_coil_in_series_is_named_in_the_caveats() -> None:
+def test_a_coil_in_series_is_a_part_of_the_circuit() -> None:
     inductive: Complexes = made().impedance + 2j * np.pi * made().frequency * 0.02
-    found = fit_circuit(replace(made(), impedance=inductive))
-    assert any("leads or a coil in series" in caveat for caveat in found.caveats)
+    found = fit_circuit(replace(made(), impedance=inductive), branches=1)
+    assert found.circuit.series_inductance == approx(0.02)
+    assert found.circuit.branches[0].inductance == approx(0.17)
+    assert found.caveats == ()
+    plain = fit_circuit(replace(made(), impedance=inductive), branches=1, parts=())
+    assert any("leads or a coil in series" in caveat for caveat in plain.caveats)

@@ -23,7 +23,6 @@ from sonolube.models.actuator import PiezoStack
 from sonolube.models.dynamics.structure import Structure, electrical_admittance
 
 _INDUCTIVE_SHARE = 0.05  # of the points
-_MOSTLY = 0.5  # of the points
 _HARDLY_DETERMINED = 4.0  # upper end of an interval over the lower
 
 LOG_COMPLEX = "log-complex"
@@ -73,14 +72,18 @@ def caveats_of_spectrum(spectrum: ImpedanceSpectrum, intervals: Mapping[str, Con
 
 
 def inductive_caveats(spectrum: ImpedanceSpectrum, fitted: Complexes) -> tuple[str, ...]:
-    """Warning about a part of a spectrum that is inductive where the fitted admittance is capacitive."""
-    f, inductive = spectrum.frequency, spectrum.admittance.imag < 0
-    apart = inductive if np.mean(inductive) > _MOSTLY else inductive & (fitted.imag > 0)
+    """Warning about a part of a spectrum that is inductive where the fitted admittance is capacitive.
+
+    A transducer is inductive between its series and its parallel resonance, and so is the fitted admittance.
+    """
+    f = spectrum.frequency
+    apart = (spectrum.admittance.imag < 0) & (fitted.imag > 0)
     if not np.mean(apart) > _INDUCTIVE_SHARE:
         return ()
     return (
         f"the impedance is inductive at {np.mean(apart):.0%} of the points, from {f[apart][0]:.6g} to"
-        f" {f[apart][-1]:.6g} Hz, where a transducer is capacitive: leads or a coil in series, which the circuit lacks",
+        f" {f[apart][-1]:.6g} Hz, where the fitted circuit is capacitive: leads or a coil in series,"
+        " which the circuit lacks",
     )
 
 

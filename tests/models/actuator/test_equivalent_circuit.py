@@ -117,3 +117,29 @@ def test_a_bare_capacitance_has_no_resonance() -> None:
 def test_impossible_elements_are_refused(values: dict[str, float], message: str) -> None:
     with raises(InvalidInput, match=message):
         MotionalBranch(**({"resistance": 1.0, "inductance": 1.0, "capacitance": 1.0} | values))
+
+
+def test_loss_and_leads_are_those_of_a_lossy_capacitor_behind_a_coil() -> None:
+    lossy = ButterworthVanDyke(
+        parallel_capacitance=2e-9, branches=(), series_resistance=3.0, series_inductance=4e-6, loss_tangent=0.02
+    )
+    # 2 nF (1 - 0.02 i) at 100 kHz: 795.77 ohm and a phase of -90 degrees and atan 0.02; the coil has 2.5133 ohm
+    impedance = 1 / circuit_admittance(lossy, frequency=1e5)
+    assert impedance == approx(795.775 / (1 + 0.02**2) * (0.02 - 1j) + 3.0 + 2.51327j, rel=1e-5)
+
+
+@pytest.mark.parametrize("name", ["series_resistance", "series_inductance", "loss_tangent"])
+def test_negative_losses_and_leads_are_refused(name: str) -> None:
+    with raises(InvalidInput, match=f"{name} must not be negative"):
+        ButterworthVanDyke(parallel_capacitance=1e-9, branches=(), **{name: -1.0})
+
+
+def test_the_coupling_factor_of_a_branch_is_its_share_of_the_capacitance_whatever_stands_beside_it() -> None:
+    # 0.25^2/(1 - 0.25^2) is 1/15
+    main, spurious = branch(20e3, 4.5e-9 / 15, 800), branch(20.35e3, 4.5e-9 * 0.03**2 / (1 - 0.03**2), 300)
+    alone = circuit_resonances(ButterworthVanDyke(parallel_capacitance=4.5e-9, branches=(main,)))
+    both = circuit_resonances(ButterworthVanDyke(parallel_capacitance=4.5e-9, branches=(spurious, main)))
+    assert alone.coupling_factor == approx([0.25])
+    assert alone.effective_coupling_factor == approx([0.25])
+    assert both.coupling_factor == approx([0.25, 0.03])
+    assert both.effective_coupling_factor[0] < 0.19

@@ -239,6 +239,8 @@ class ImpedanceSettings:
         "log-complex", "log-magnitude" or "linear-magnitude".
     series_resistance : float
         Of the leads, as known. [ohm]
+    parts : tuple of str or None
+        Of `CIRCUIT_PARTS` that the circuit has; None takes those that the data demand.
     sweep : str or None
         Which of several sweeps of a file.
     stack : StackInStructure or None
@@ -248,6 +250,7 @@ class ImpedanceSettings:
     branches: int | None = None
     residual: str = LOG_COMPLEX
     series_resistance: float = 0.0
+    parts: tuple[str, ...] | None = None
     sweep: str | None = None
     stack: StackInStructure | None = None
 
@@ -273,7 +276,11 @@ def impedance_sheet(path: Path, *, settings: ImpedanceSettings) -> sheet.Sheet:
 def _circuit(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings) -> sheet.Sheet:
     """Butterworth-Van Dyke circuit fitted to a spectrum."""
     fit = fit_circuit(
-        spectrum, branches=settings.branches, residual=settings.residual, series_resistance=settings.series_resistance
+        spectrum,
+        branches=settings.branches,
+        residual=settings.residual,
+        series_resistance=settings.series_resistance,
+        parts=settings.parts,
     )
     captioned = sheet.captioned(
         "Impedance with the fitted circuit",
@@ -307,6 +314,13 @@ def _stack(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings, initial: St
 _OF_RIG = ("free_capacitance", "free_stroke_per_volt", "stack_stiffness", "stack_damping")  # entries of a rig
 
 
+_LABELS = {  # of quantities of branches, with the definition that holds beside other branches
+    "coupling_factor": "Coupling factor by C/(C0 + C)",
+    "parallel_frequency": "Parallel resonance of the whole circuit",
+    "effective_coupling_factor": "Effective coupling of the whole circuit",
+}
+
+
 def _values(intervals: Mapping[str, ConfidenceInterval]) -> tuple[sheet.Value, ...]:
     """Fitted parameters with their intervals."""
     return tuple(_value(name, interval) for name, interval in intervals.items())
@@ -319,7 +333,7 @@ def _value(name: str, interval: ConfidenceInterval) -> sheet.Value:
         return sheet.quantity_value(name, interval.value, interval=ends)
     base, _, branch = name.rpartition("_")
     word = quantities()[base]
-    label = f"{word.meaning}, branch {branch}"
+    label = f"{_LABELS.get(base, word.meaning)}, branch {branch}"
     return sheet.Value(name, label, interval.value, word.unit, interval=ends)
 
 

@@ -5,7 +5,8 @@ The normal stiffness of a contact follows from the shift of a resonance between 
 
 from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import Annotated, Any, Literal, Unpack
+from types import MappingProxyType
+from typing import Annotated, Any, Final, Literal, Unpack
 
 from sonolube.errors import InvalidInput
 from sonolube.report import Drawing, MeasurementReport, measurement_object
@@ -36,6 +37,11 @@ from sonolube.tasks.parameters import (
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 
+_LEADS: Final = ("series_inductance", "series_resistance")
+_PARTS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
+    {"plain": (), "loss": ("loss_tangent",), "leads": _LEADS, "loss-and-leads": ("loss_tangent", *_LEADS)}
+)
+
 
 @task
 def impedance(
@@ -50,6 +56,10 @@ def impedance(
     series_resistance: Annotated[
         Number | None, Quantity("Of the leads, such as 0.2ohm.", "series_resistance", kind="RESISTANCE")
     ] = None,
+    circuit: Annotated[
+        Literal["plain", "loss", "leads", "loss-and-leads"] | None,
+        Parameter("Parts beside branches: none, or dielectric loss and leads; what the data demand by default."),
+    ] = None,
     sweep: Annotated[str | None, Parameter("Sweep of the file, such as memory.", "NAME")] = None,
     stack_of: Annotated[OptionalRigSource, File("Fit the stack of this rig's structure.", "RIG.toml")] = None,
     test_sheet: TestSheet = None,
@@ -61,11 +71,12 @@ def impedance(
     """
     if stack_of is not None:
         because = f"for {shown('stack_of')}; it is for an equivalent circuit"
-        refuse_unused("branches", "series_resistance", because=because)
+        refuse_unused("branches", "series_resistance", "circuit", because=because)
     settings = ImpedanceSettings(
         branches=branches,
         residual=residual,
         series_resistance=in_si("series_resistance", series_resistance) or 0.0,
+        parts=None if circuit is None else _PARTS[circuit],
         sweep=sweep,
         stack=None if stack_of is None else StackInStructure(*structure_by_stack(rig_of(stack_of))),
     )
