@@ -89,11 +89,20 @@ class UnknownName(SonolubeError, LookupError):
     def among(cls, known: Iterable[str], *, kind: str, name: str) -> "UnknownName":
         """Error for an unknown name, with the closest known name as a suggestion."""
         names = sorted(known)
-        return cls(f"unknown {kind} {name!r}; {suggestion(name, names) or 'known: ' + ', '.join(names)}")
+        quoted = repr(name if len(name) <= _LONGEST else f"{name[:_LONGEST]}...")
+        return cls(f"unknown {kind} {quoted}; {suggestion(name, names) or 'known: ' + ', '.join(names)}")
 
 
 class MissingPackage(InvalidInput, ImportError):
     """A package of an optional part of the installation is not installed."""
+
+
+class SystemRefusal(SonolubeError, OSError):
+    """What the operating system refuses, such as a folder without permission to write."""
+
+
+class UnexpectedFault(SonolubeError, RuntimeError):
+    """A fault of sonolube itself, in one line with its kind and place; the original is its cause."""
 
 
 class ModelRangeWarning(UserWarning):
@@ -151,5 +160,7 @@ def entry_named(known: Mapping[str, _Entry], name: str, *, kind: str) -> _Entry:
 
 def suggestion(name: str, known: Iterable[str]) -> str:
     """Question "did you mean ...?" with the closest known name, or an empty text if none is close."""
+    if len(name) > _LONGEST:
+        return ""
     close = get_close_matches(name.lower(), list(known), n=1, cutoff=0.6)
     return f"did you mean {close[0]}?" if close else ""

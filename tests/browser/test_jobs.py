@@ -119,7 +119,7 @@ def test_no_file_beside_those_of_a_job_is_read(jobs: Jobs) -> None:
     "failure", [IndexError("list index out of range"), ZeroDivisionError("float division by zero"), RuntimeError("no")]
 )
 def test_a_job_that_raises_what_no_refusal_foresees_has_failed_by_a_fault_of_sonolube(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], failure: Exception
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, failure: Exception
 ) -> None:
     def failing(*_: object) -> None:
         raise failure
@@ -136,4 +136,6 @@ def test_a_job_that_raises_what_no_refusal_foresees_has_failed_by_a_fault_of_son
         f"a fault of sonolube itself, not of your input: {kind} in sonolube/browser/job.py"
     )
     assert "memory" not in state["reason"]
-    assert "Traceback" in capsys.readouterr().err
+    file = Path(state["reason"].partition(", and attach ")[2].partition(",")[0])
+    assert "Traceback" in file.read_text(encoding="utf-8")
+    file.unlink()

@@ -6,11 +6,12 @@ import os
 import re
 import signal
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from threading import Event, Thread
 from typing import Any
 
 import pytest
-from pytest import CaptureFixture, MonkeyPatch
+from pytest import MonkeyPatch
 
 from sonolube.browser import worker
 from sonolube.browser.requests import KINDS, Places
@@ -131,12 +132,14 @@ def test_memory_that_runs_out_is_told_as_such(monkeypatch: MonkeyPatch) -> None:
     assert "does not fit into the memory of a worker; ask for fewer points" in json.loads(body)["text"]
 
 
-def test_the_traceback_of_a_fault_is_printed_for_who_runs_the_workbench(
-    monkeypatch: MonkeyPatch, capsys: CaptureFixture[str]
-) -> None:
+def test_the_line_of_a_fault_names_the_file_with_its_request_and_traceback(monkeypatch: MonkeyPatch) -> None:
     monkeypatch.setitem(KINDS._loaded, "task", stand_in)
-    reply("task", {"raises": "IndexError"}, NOWHERE)
-    assert "Traceback" in capsys.readouterr().err
+    line = json.loads(reply("task", {"raises": "IndexError"}, NOWHERE)[1])["text"]
+    file = Path(line.partition(", and attach ")[2].partition(",")[0])
+    record = json.loads(file.read_text(encoding="utf-8"))
+    assert record["arguments"] == {"raises": "IndexError"}
+    assert record["traceback"].startswith("Traceback")
+    file.unlink()
 
 
 def test_a_pool_ends_while_a_request_still_waits() -> None:

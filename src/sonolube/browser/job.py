@@ -3,7 +3,6 @@
 import json
 import sys
 import time
-import traceback
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -13,8 +12,9 @@ from sonolube.browser.answer_files import made_by, marked
 from sonolube.browser.answers import answer_object, called, given_arguments, offered_task
 from sonolube.browser.requests import Places
 from sonolube.browser.worker import encoded, limit_process
-from sonolube.errors import SonolubeError, fault_line
+from sonolube.errors import SonolubeError, UnexpectedFault
 from sonolube.storage.files import write_atomically
+from sonolube.tasks.faults import unexpected
 from sonolube.tasks.task import marks_of
 
 if TYPE_CHECKING:
@@ -60,13 +60,14 @@ def main(folder: Path) -> None:
             names = write_files(files, folder=folder / "files", line=line)
             more = {"files": names, "made_by": line}
             write_atomically(folder / "result.json", encoded(answer_object(answer) | more).decode())
+    except UnexpectedFault as fault:
+        record.write("failed", reason=str(fault))
     except (SonolubeError, OSError) as failure:  # as the terminal does
         record.write("refused", reason=str(failure))
     except MemoryError:
         record.write("failed", reason="does not fit into the 2 GiB of memory of a job; ask for fewer points")
     except (Exception, SystemExit) as failure:  # whatever a task raises
-        traceback.print_exc(file=sys.stderr)
-        record.write("failed", reason=fault_line(failure))
+        record.write("failed", reason=str(unexpected(failure, request["task"], request["arguments"])))
     else:
         record.write("done")
 

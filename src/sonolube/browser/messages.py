@@ -7,7 +7,8 @@ from typing import Any, Final
 from starlette.requests import Request
 from starlette.responses import Response
 
-from sonolube.errors import InvalidInput, fault_line
+from sonolube.errors import InvalidInput
+from sonolube.tasks.faults import unexpected
 
 JSON: Final = "application/json"
 """Kind of content."""
@@ -24,8 +25,7 @@ async def refused(request: Request, failure: Exception) -> Response:
 
 async def faulty(request: Request, failure: Exception) -> Response:
     """Fault of the program as JSON; the server prints its traceback."""
-    del request
-    text = fault_line(failure)
+    text = str(unexpected(failure, request.url.path, {}))
     return json_response({"text": text, "faults": [{"key": "", "text": text}]}, status=500)
 
 

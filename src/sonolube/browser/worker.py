@@ -10,9 +10,7 @@ import json
 import multiprocessing
 import os
 import signal
-import sys
 import tempfile
-import traceback
 from collections.abc import Awaitable, Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from multiprocessing.connection import Connection
@@ -20,7 +18,8 @@ from multiprocessing.process import BaseProcess
 from typing import Any, Final
 
 from sonolube.browser.requests import OPENED, Places
-from sonolube.errors import SonolubeError, fault_line
+from sonolube.errors import SonolubeError, UnexpectedFault
+from sonolube.tasks.faults import unexpected
 
 _REFUSED, _FAILED = 422, 500
 _GIBIBYTE: Final = 2**30
@@ -75,6 +74,8 @@ def reply(kind: str, payload: Mapping[str, Any], places: Places) -> tuple[int, b
 
     try:
         return 200, encoded(KINDS[kind](payload, places))
+    except UnexpectedFault as fault:
+        return _FAILED, _one_line(str(fault))
     except (SonolubeError, OSError) as failure:  # as the terminal does
         return _REFUSED, encoded(refusal_object(failure))
     except MemoryError:
@@ -82,8 +83,7 @@ def reply(kind: str, payload: Mapping[str, Any], places: Places) -> tuple[int, b
             "does not fit into the memory of a worker; ask for fewer points, or use the terminal"
         )
     except (Exception, SystemExit) as failure:  # whatever a task raises, the worker answers the next request
-        traceback.print_exc(file=sys.stderr)
-        return _FAILED, _one_line(fault_line(failure))
+        return _FAILED, _one_line(str(unexpected(failure, kind, payload)))
 
 
 def _one_line(text: str) -> bytes:

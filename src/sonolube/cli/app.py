@@ -4,7 +4,6 @@ import io
 import os
 import re
 import sys
-import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib import import_module
@@ -15,7 +14,7 @@ from typer.main import get_command
 from sonolube import __version__
 from sonolube.cli.console.figure_style import show_help_literally, with_figure_style
 from sonolube.cli.console.options import with_checked_files
-from sonolube.errors import SeveralFaults, SonolubeError, fault_line
+from sonolube.errors import SeveralFaults, SonolubeError, UnexpectedFault
 from sonolube.execution.threads import threads_running
 from sonolube.tasks.table import LAB, LOOKUP, PREDICT, TASKS, Task, docstring
 from sonolube.text.plain_text import printable
@@ -147,7 +146,7 @@ def program(arguments: Sequence[str]) -> typer.Typer:
 def run(arguments: Sequence[str] | None = None) -> None:
     """Run the program and exit: 0 after success, 1 after files refused, 2 after bad input.
 
-    After a fault of the program, whose line is the last one below the traceback, 70; after an interruption, 130.
+    After a fault of the program, of which one line names a file that reproduces it, 70; after an interruption, 130.
 
     Parameters
     ----------
@@ -168,6 +167,9 @@ def run(arguments: Sequence[str] | None = None) -> None:
         called = get_command(program(arguments))
         show_help_literally(called)
         code = called(args=arguments, prog_name="sonolube", standalone_mode=False)
+    except UnexpectedFault as fault:
+        _refuse(command, str(fault))
+        code = _FAULT
     except SeveralFaults as refusal:
         code = _refuse(command, refusal.heading, refusal.lines)
     except (SonolubeError, OSError) as refusal:
@@ -179,8 +181,9 @@ def run(arguments: Sequence[str] | None = None) -> None:
     except (KeyboardInterrupt, typer.Abort):
         code = _INTERRUPTED
     except Exception as failure:  # whatever a command raises that no refusal foresees
-        traceback.print_exc(file=sys.stderr)
-        _refuse(command, fault_line(failure))
+        from sonolube.tasks.faults import unexpected
+
+        _refuse(command, str(unexpected(failure, command, {"arguments": arguments})))
         code = _FAULT
     if code == _INTERRUPTED and threads_running():
         sys.stdout.flush()

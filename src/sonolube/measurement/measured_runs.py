@@ -14,8 +14,9 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import RecordingMapping, read_mapping
-from sonolube.measurement.run_columns import DIRECTION_COLUMN, FRICTION_COLUMNS, heading
-from sonolube.measurement.run_table import RunTable, assigned_columns, run_table
+from sonolube.measurement.recordings.raw_table import si_conversion
+from sonolube.measurement.run_columns import DIRECTION_COLUMN, FRICTION_COLUMNS, TEXT_NAMES, heading
+from sonolube.measurement.run_table import RunTable, assigned_columns, left_out_caveat, run_table
 from sonolube.text.units import format_si
 from sonolube.vocabulary import quantities
 
@@ -67,6 +68,62 @@ def runs_of_rows(path: Path, rows: Sequence[list[str]]) -> "xr.Dataset":
     """Measured runs from the rows of a table, its header first, as `read_runs`."""
     header, *body = rows
     return _runs(assigned_columns(path, 1, header, list(enumerate(body, 2))), path)
+
+
+def runs_of_dataset(dataset: "xr.Dataset", *, name: str = "runs") -> "xr.Dataset":
+    """Measured runs from a dataset of one dimension, with a friction reduction in every run.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Variables by the names of `RUN_COLUMNS` or of the vocabulary, in SI or in the unit of their attribute `units`,
+        among them what `read_runs` needs. A dataset of `read_runs` is returned as it is.
+    name : str
+        Of the dataset in refusals.
+
+    Returns
+    -------
+    xarray.Dataset
+        As of `read_runs`.
+
+    Raises
+    ------
+    InvalidInput
+        If the dataset has no runs, or none with a friction.
+    """
+    given = dataset.variables.get("friction_reduction")
+    if (
+        given is not None
+        and given.dims == ("run",)
+        and given.dtype.kind == "f"
+        and given.size
+        and len(dataset.sizes) == 1
+    ):
+        return dataset
+    wide = {each: variable for each, variable in dataset.variables.items() if variable.ndim}
+    dimensions = {variable.dims for variable in wide.values()}
+    if len(dimensions) != 1 or len(next(iter(dimensions))) != 1:
+        sizes = ", ".join(f"{each} ({size})" for each, size in list(dataset.sizes.items())[:_MAX_LINES])
+        raise InvalidInput(f"{name}: a dataset of runs has one dimension, got {sizes or 'none'}")
+    columns: dict[str, Floats] = {}
+    texts: dict[str, list[str]] = {}
+    left_out = []
+    for label, variable in wide.items():
+        if label in quantities() and variable.dtype.kind in "fiu":
+            columns[str(label)] = _in_si(str(label), variable, name)
+        elif label in (*TEXT_NAMES, "run", f"{DIRECTION_COLUMN}_word"):
+            texts[str(label)] = [str(each) for each in variable.values.tolist()]
+        elif label not in dataset.indexes:
+            left_out.append(str(label))
+    lines = list(range(1, next(iter(wide.values())).size + 1))
+    return _runs(RunTable(columns=columns, texts=texts, lines=lines, caveats=left_out_caveat(left_out)), Path(name))
+
+
+def _in_si(label: str, variable: "xr.Variable", name: str) -> Floats:
+    """Values of a variable in SI, in which they are where it states no unit."""
+    unit, stated = quantities()[label].unit, str(variable.attrs.get("units", ""))
+    gain, offset, _ = si_conversion(stated or unit, unit=unit, name=f"{name}: {label}")
+    return offset + gain * np.asarray(variable.values, float)
 
 
 def _runs(table: RunTable, path: Path) -> "xr.Dataset":

@@ -152,7 +152,7 @@ def assigned_columns(
         columns={each.name: _in_si(path, line, each, rows, sign, missing) for each in numbers},
         texts=texts | ({f"{DIRECTION_COLUMN}_word": directions} if any(directions) else {}),
         lines=[number for number, _ in rows],
-        caveats=(*summaries, *_left_out_caveat(left_out)),
+        caveats=(*summaries, *left_out_caveat(left_out)),
     )
 
 
@@ -327,7 +327,7 @@ def _sign_hint(cell: str, sign: str) -> str:
     return f" with the decimal sign {sign!r}; give text.decimal_sign in a mapping" if other in cell else ""
 
 
-def _left_out_caveat(labels: Sequence[str]) -> tuple[str, ...]:
+def left_out_caveat(labels: Sequence[str]) -> tuple[str, ...]:
     """Caveat about the columns that are not read."""
     if not labels:
         return ()

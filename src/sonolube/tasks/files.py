@@ -32,7 +32,8 @@ InputFile = str | Path | NamedBytes
 """A file to read: its path, or its name with its bytes."""
 
 _PREFIX = "sonolube-bytes-"
-_PRIVATE = re.compile(rf"[^\s'\"(]*{_PREFIX}\w+{re.escape(os.sep)}")
+_REST = re.compile(rf"\w+{re.escape(os.sep)}")
+_BEFORE_A_PATH = (" ", "'", '"', "(", "\t", "\n")
 _OPEN: ContextVar[ExitStack | None] = ContextVar("open", default=None)
 
 
@@ -56,7 +57,16 @@ def file_path(file: InputFile) -> Path:
 
 def with_names_only(text: str) -> str:
     """Text in which files whose bytes were given stand by their names, without their private folders."""
-    return _PRIVATE.sub("", text)
+    first, *others = text.split(_PREFIX)
+    pieces = [first]
+    for each in others:
+        if rest := _REST.match(each):
+            before = pieces[-1]
+            pieces[-1] = before[: max(before.rfind(sign) for sign in _BEFORE_A_PATH) + 1]
+            pieces.append(each[rest.end() :])
+        else:
+            pieces[-1] += _PREFIX + each
+    return "".join(pieces)
 
 
 @contextmanager

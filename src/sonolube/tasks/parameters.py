@@ -6,6 +6,7 @@ from pathlib import Path
 from types import NoneType, UnionType
 from typing import TYPE_CHECKING, Annotated, Any, Protocol, TypeAlias, TypedDict, Union, get_args, get_origin
 
+from sonolube.errors import InvalidInput
 from sonolube.tasks.files import InputFile, NamedBytes, file_path
 from sonolube.tasks.progress import Cancelled, Progress
 from sonolube.vocabulary import quantities
@@ -106,6 +107,19 @@ class DoorParameter:
     files: str = ""
 
 
+@dataclass(frozen=True, slots=True)
+class RigEntry(DoorParameter):
+    """Marks arguments by which Python replaces entries of the rig, as a terminal does by its options.
+
+    Parameters
+    ----------
+    unit : str or None
+        SI unit of a quantity.
+    """
+
+    unit: str | None = None
+
+
 RigSource: TypeAlias = "Rig | HasRig | InputFile"
 """A rig, an answer that has one, or the path of a file."""
 
@@ -139,6 +153,42 @@ class Watched(TypedDict, total=False):
     cancelled: Annotated[Cancelled | None, DoorParameter()]
 
 
+class RigChanges(TypedDict, total=False):
+    """Argument `changes` of tasks of a rig, which a terminal has as --set."""
+
+    changes: Annotated[Sequence[str], RigEntry()]
+
+
+class DrivenRigEntries(RigChanges, total=False):
+    """Arguments of tasks of a rig that have loads of their own."""
+
+    amplitude: Annotated[str | None, RigEntry()]
+
+
+class RestingRigEntries(RigChanges, total=False):
+    """Arguments of tasks of a rig whose amplitude changes nothing."""
+
+    load: Annotated[Number | None, RigEntry(unit="N")]
+
+
+class RigEntries(DrivenRigEntries, total=False):
+    """Arguments of tasks of a rig by which its entries are replaced."""
+
+    load: Annotated[Number | None, RigEntry(unit="N")]
+
+
+class WatchedRigChanges(RigChanges, Watched, total=False):
+    """Arguments of `RigChanges` and `Watched`."""
+
+
+class WatchedRestingRig(RestingRigEntries, Watched, total=False):
+    """Arguments of `RestingRigEntries` and `Watched`."""
+
+
+class WatchedRig(RigEntries, Watched, total=False):
+    """Arguments of `RigEntries` and `Watched`."""
+
+
 Keep = Annotated[Kept | None, DoorParameter()]
 Pin = Annotated[str | None, Parameter("Material of the pin, for the heat; by default the rig's.", "MATERIAL")]
 Disc = Annotated[str | None, Parameter("Material of the disc, for the heat; by default the rig's.", "MATERIAL")]
@@ -156,6 +206,43 @@ def rig_of(source: RigSource) -> "Rig":
     if isinstance(source, Rig):
         return source
     return read_rig(file_path(source)) if isinstance(source, InputFile) else source.rig
+
+
+def with_entries(
+    source: RigSource, *, load: Number | None = None, amplitude: str | None = None, changes: Sequence[str] = ()
+) -> "Rig":
+    """Rig of a task with entries replaced.
+
+    Parameters
+    ----------
+    source : Rig, answer with one, or file
+    load : float, str or None
+        Normal load, in N or as a text with its unit.
+    amplitude : str or None
+        Source of the amplitude: measured, computed, waveguide or per-volt.
+    changes : sequence of str
+        Further entries, such as "sliding.sliding_speed=87mm/s".
+
+    Raises
+    ------
+    InvalidInput
+        If an entry cannot be replaced, or the rig was changed in Python since it was read.
+    """
+    from sonolube.rig import Rig, read_rig
+
+    replaced = list(changes)
+    if amplitude is not None:
+        replaced.append(f"vibration.amplitude_source={amplitude}")
+    if load is not None:
+        replaced.append(f"contact.normal_load={load if isinstance(load, str) else f'{load!r} N'}")
+    if isinstance(source, InputFile):
+        return read_rig(file_path(source), changes=replaced)
+    rig = source if isinstance(source, Rig) else source.rig
+    for key, equals, value in (change.partition("=") for change in replaced):
+        if not equals:
+            raise InvalidInput(f"{key!r} must look like KEY=VALUE, such as sliding.sliding_speed=87mm/s")
+        rig = rig.replace(key.strip(), value.strip())
+    return rig
 
 
 def optional_rig(source: OptionalRigSource) -> "Rig | None":

@@ -4,16 +4,16 @@ from collections.abc import Callable, Iterable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from contextvars import ContextVar
 from functools import update_wrapper
-from inspect import Parameter as Argument, Signature, cleandoc, signature
+from inspect import BoundArguments, Parameter as Argument, Signature, cleandoc, signature
 from math import inf, isfinite
-from numbers import Real
-from types import NoneType
-from typing import Any, Generic, Literal, ParamSpec, TypeVar, get_args, get_origin, get_type_hints, overload
+from typing import Any, Generic, ParamSpec, TypeVar, get_args, get_type_hints, overload
 
-from sonolube.errors import InvalidInput, SonolubeError, UnknownName
+from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.tasks.answer import Answer
-from sonolube.tasks.files import private_files, with_names_only
-from sonolube.tasks.parameters import Call, File, Mark, Number, Parameter, RigParameter, Watched, members_of
+from sonolube.tasks.boundary import coercion, is_of_caller
+from sonolube.tasks.faults import refused_by_system, tidy, unexpected
+from sonolube.tasks.files import private_files
+from sonolube.tasks.parameters import Call, File, Mark, Number, Parameter, RigEntry, RigParameter, with_entries
 from sonolube.tasks.progress import cell_progress, is_in_notebook, observed, watched, within
 from sonolube.tasks.table import split_examples
 from sonolube.text.units import temperature_difference_to_si, to_si
@@ -22,6 +22,9 @@ P = ParamSpec("P")
 A = TypeVar("A", bound=Answer)
 _RIG = "The rig, or the path of its file."
 _DOORS = {
+    "load": "Normal load in place of the rig's, in N or as a text such as '40 N'.",
+    "amplitude": "Source of the amplitude in place of the rig's: measured, computed, waveguide or per-volt.",
+    "changes": "Entries of the rig to replace, such as 'sliding.sliding_speed=87mm/s'.",
     "progress": "Called with the stage, the number done and their total.",
     "cancelled": "Asked at every report of progress whether to stop; then the task raises TaskCancelled.",
     "keep": "Folder for what is computed so far, from which an interrupted task continues.",
@@ -68,33 +71,63 @@ class TaskFunction(Generic[P, A]):
         self._function, self.__signature__ = function, _form(function)
         self._marks = marks_of(self)
         arguments = self.__signature__.parameters.items()
-        kinds = {name: get_args(argument.annotation)[0] for name, argument in arguments}
-        self._choices = {name: _choices(kind) for name, kind in kinds.items()}
-        self._numbers = {name: set(members_of(kind)) for name, kind in kinds.items() if _is_plain_number(kind)}
+        self._coercions = {
+            name: coercion(get_args(argument.annotation)[0], self._marks[name]) for name, argument in arguments
+        }
+        self._rigs = [name for name, mark in self._marks.items() if isinstance(mark, RigParameter)]
         if function.__doc__:
             self.__doc__ = _described(function.__doc__, self.__signature__.parameters, self._marks)
 
     def __call__(self, *positional: P.args, **named: P.kwargs) -> A:
         """Answer to the arguments."""
         bound = self.__signature__.bind(*positional, **named)
-        given = frozenset(bound.arguments)
-        bound.apply_defaults()
-        call = Call(self._function.__name__, dict(bound.arguments), given, self._marks, _NAMES.get())
-        _refuse_impossible(call, self._choices)
-        _refuse_other_than_numbers(call, self._numbers)
         try:
-            with (
-                within(_CALL, call),
-                private_files(),
-                in_notebooks(),
-                watched(bound.arguments.get("progress"), bound.arguments.get("cancelled")),
-            ):
-                found = self._function(*positional, **named)
+            with private_files(), in_notebooks():
+                return self._answer(bound)
         except SonolubeError as failure:
-            failure.args = tuple(with_names_only(each) if isinstance(each, str) else each for each in failure.args)
+            tidy(failure)
             raise
+        except OSError as failure:
+            raise refused_by_system(failure) from failure
+        except (MemoryError, Warning):  # of the machine; of a filter of the user
+            raise
+        except Exception as failure:
+            if is_of_caller(failure):
+                raise
+            raise unexpected(failure, self._function.__name__, bound.arguments) from failure
+
+    def _answer(self, bound: BoundArguments) -> A:
+        """Answer to arguments as they were given."""
+        arguments = bound.arguments
+        for name, value in arguments.items():
+            try:
+                arguments[name] = self._coercions[name](shown(name), value)
+            except InvalidInput as refusal:
+                refusal.key = refusal.key or name
+                raise
+        self._replace_entries(arguments)
+        positional, named = bound.args, bound.kwargs
+        given = frozenset(arguments)
+        bound.apply_defaults()
+        known = {name: value for name, value in bound.arguments.items() if not isinstance(self._marks[name], RigEntry)}
+        call = Call(self._function.__name__, known, given, self._marks, _NAMES.get())
+        _refuse_out_of_range(call)
+        with within(_CALL, call), watched(arguments.get("progress"), arguments.get("cancelled")):
+            found = self._function(*positional, **named)
         object.__setattr__(found, "call", call)
         return found
+
+    def _replace_entries(self, arguments: dict[str, Any]) -> None:
+        """Replace entries of the rigs by the arguments that say so, which the function of the task does not take."""
+        names = [name for name in arguments if isinstance(self._marks[name], RigEntry)]
+        entries = {name: value for name in names if (value := arguments.pop(name)) is not None and value != []}
+        if not entries:
+            return
+        rigs = [name for name in self._rigs if arguments.get(name) is not None]
+        if not rigs:
+            raise InvalidInput(f"{shown(next(iter(entries)))} needs a rig", key=next(iter(entries)))
+        for name in rigs:
+            arguments[name] = with_entries(arguments[name], **entries)
 
     def __repr__(self) -> str:
         return f"<task {self.__module__}.{self._function.__qualname__}>"
@@ -218,49 +251,22 @@ def given_arguments(names: Iterable[str]) -> dict[str, Any]:
 
 
 def _form(function: Callable[..., Any]) -> Signature:
-    """Signature of a function, with the arguments that its `**watch` stands for."""
+    """Signature of a function, with the arguments that its keywords stand for."""
     form = signature(function)
     own = [each for each in form.parameters.values() if each.kind is not Argument.VAR_KEYWORD]
-    if len(own) < len(form.parameters):
-        watched_by = get_type_hints(Watched, include_extras=True)
-        own += [Argument(each, Argument.KEYWORD_ONLY, default=None, annotation=watched_by[each]) for each in watched_by]
+    for each in form.parameters.values():
+        if each.kind is Argument.VAR_KEYWORD:
+            known = get_type_hints(get_args(each.annotation)[0], include_extras=True)
+            own += [Argument(name, Argument.KEYWORD_ONLY, default=None, annotation=known[name]) for name in known]
     return form.replace(parameters=own)
 
 
-def _choices(kind: Any) -> tuple[Any, ...]:
-    """Words of which an argument of a type is one, or has several; empty where it may be anything else."""
-    if get_origin(kind) is Literal:
-        return get_args(kind)
-    members = [_choices(each) for each in get_args(kind) if each not in (NoneType, ...)]
-    return tuple(word for words in members for word in words) if all(members) else ()
-
-
-def _refuse_impossible(call: Call, choices: Mapping[str, tuple[Any, ...]]) -> None:
-    """Refuse words that are no choice, and plain numbers out of their range."""
+def _refuse_out_of_range(call: Call) -> None:
+    """Refuse plain numbers out of their range."""
     for name, value in call.arguments.items():
         mark = call.marks[name]
-        if choices[name] and value is not None:
-            for word in [value] if isinstance(value, str) else value:
-                if word not in choices[name]:
-                    raise UnknownName.among(choices[name], kind=shown(name), name=word)
-        elif isinstance(mark, Parameter) and mark.unit is None and isinstance(value, int | float):
+        if isinstance(mark, Parameter) and mark.unit is None and isinstance(value, int | float):
             _require_within(mark, name, value, value)
-
-
-def _is_plain_number(kind: Any) -> bool:
-    """Whether an argument of a type is a number without a unit, and nothing else."""
-    return bool(members_of(kind)) and set(members_of(kind)) <= {int, float}
-
-
-def _refuse_other_than_numbers(call: Call, numbers: Mapping[str, set[type]]) -> None:
-    """Refuse texts for plain numbers, and fractions for whole ones."""
-    for name, kinds in numbers.items():
-        value = call.arguments[name]
-        is_whole = float not in kinds
-        is_number = isinstance(value, Real) and not isinstance(value, bool)
-        if value is not None and not (is_number and (not is_whole or value == int(value))):
-            what = "a whole number" if is_whole else "a number"
-            raise InvalidInput(f"{shown(name)} must be {what}, got {value!r}", key=name)
 
 
 def _require_within(mark: Parameter, name: str, number: float, given: Number) -> None:

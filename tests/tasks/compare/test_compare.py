@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 from pytest import MonkeyPatch, approx
 from tests.names import names_of
+from tests.tasks.running import RigStandIn
 
 from sonolube.report.blocks import Table
 from sonolube.tasks.compare import compare, literature
@@ -15,7 +16,7 @@ from sonolube.tasks.compare.literature import LiteratureAnswer
 from sonolube.tasks.files import NamedBytes
 from sonolube.validation.previous_study_map import StudyPoint
 
-RIG: Any = SimpleNamespace(title="Own rig", assumptions={})
+RIG: Any = RigStandIn(title="Own rig", assumptions={})
 OWN: Any = SimpleNamespace(caveats=("of the rig",))
 TABLE: Any = SimpleNamespace(caveats=("of the runs",), title="Own runs", runs=6, conditions=(1, 2), scatter=0.03449)
 

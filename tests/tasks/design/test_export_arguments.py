@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 from pytest import MonkeyPatch, approx, raises
 from tests.names import names_of
+from tests.tasks.running import RigStandIn
 
 from sonolube.errors import InvalidInput
 from sonolube.rig import AMPLITUDE, VOLTAGE
@@ -13,7 +14,7 @@ from sonolube.tasks.export import mock_up
 from sonolube.tasks.export.mock_up import fmu
 
 NAMES = names_of(mock_up)
-RIG: Any = SimpleNamespace(
+RIG: Any = RigStandIn(
     name="own-rig", title="Own rig", structure=None, pin_material=None, disc_material=None, assumptions={}
 )
 
@@ -115,7 +116,7 @@ def test_an_amplitude_of_one_frequency_is_not_tracked(asked: Asked) -> None:
 
 
 def test_a_structure_has_its_own_resonance_and_a_rate_is_positive(asked: Asked) -> None:
-    whole: Any = SimpleNamespace(**{**vars(RIG), "structure": object()})
+    whole: Any = RigStandIn(**{**vars(RIG), "structure": object()})
     fmu(whole)
     for argument in ({"quality": 80.0}, {"coupling": 0.3}):
         with raises(InvalidInput, match="has no meaning for a rig whose file has the table structure"):

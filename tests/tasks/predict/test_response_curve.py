@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from pytest import raises
 from tests.same import approx
-from tests.tasks.running import running
+from tests.tasks.running import RigStandIn, running
 
 from sonolube.errors import InvalidInput
 from sonolube.report.blocks import Rows, Table
@@ -18,7 +18,7 @@ from sonolube.tasks.predict.response_curve import ResponseCurveAnswer
 from sonolube.tasks.predict.rig_record import RigRecord
 
 NAN = float("nan")
-RIG: Any = SimpleNamespace(title="Own rig", name="own", normal_load=3.0, assumptions={}, sliding_speed=0.02)
+RIG: Any = RigStandIn(title="Own rig", name="own", normal_load=3.0, assumptions={}, sliding_speed=0.02)
 
 
 def curve(**more: Any) -> Any:
@@ -205,7 +205,7 @@ def test_a_film_is_stated_by_two_numbers_or_follows_from_a_viscosity() -> None:
 @pytest.mark.parametrize("given", [{"pin": "steel"}, {"disc": "steel"}])
 def test_both_materials_belong_together(given: dict[str, str]) -> None:
     with raises(InvalidInput, match=r"^pin and disc belong together: give both or neither$"):
-        regime(SimpleNamespace(), **given)
+        regime(RigStandIn(), **given)
 
 
 @dataclass

@@ -6,7 +6,6 @@ It belongs to no workbench: the end of that, of its terminal or of the network c
 import json
 import os
 import sys
-import traceback
 from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
@@ -16,11 +15,12 @@ from sonolube.browser.lab.live_run import LiveRun
 from sonolube.browser.lab.runner_records import END, REQUEST, RUNNER, write_private
 from sonolube.browser.lab.stop_page import StopServer
 from sonolube.browser.requests import Places
-from sonolube.errors import SonolubeError, fault_line
+from sonolube.errors import SonolubeError
 from sonolube.laboratory import RunControl
 from sonolube.operating_system import process_start
 from sonolube.storage.files import locked_folder
 from sonolube.storage.interruption import asked_by_signal, end_program_at_signals, undone_at_signal
+from sonolube.tasks.faults import unexpected
 
 _AT_WORK: Final = "at-work"
 
@@ -66,8 +66,7 @@ def main(folder: Path) -> None:
     except SonolubeError as failure:
         ended = _broken(live, str(failure))
     except BaseException as failure:  # whatever it was, the outputs were switched off on the way
-        traceback.print_exc(file=sys.stderr)
-        ended = _broken(live, fault_line(failure))
+        ended = _broken(live, str(unexpected(failure, "lab run", request)))
     live.end(*ended)
     try:
         write_private(folder / END, live.status())

@@ -22,6 +22,7 @@ from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.operating_system import TypedLines
 from sonolube.storage.files import expect_file, expect_files
 from sonolube.storage.user_files import command_files, record_input
+from sonolube.tasks.parameters import with_entries
 from sonolube.text.plain_text import printable
 from sonolube.text.units import to_si
 
@@ -72,15 +73,9 @@ def rig_of_options(
             if value:
                 raise InvalidInput(f"{option} needs a rig; name its file, such as examples/rigs/tribometer.toml")
         return None
-    from sonolube.rig import read_rig
-
-    replaced = list(changes or ())
-    if amplitude is not None:
-        replaced.append(f"vibration.amplitude_source={amplitude}")
     if load is not None:
         to_si(load, unit="N", name="--load")
-        replaced.append(f"contact.normal_load={load}")
-    return read_rig(path, changes=replaced)
+    return with_entries(path, load=load, amplitude=amplitude, changes=changes or ())
 
 
 _Mark = TypeVar("_Mark")

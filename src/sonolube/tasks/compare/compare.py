@@ -15,7 +15,7 @@ from sonolube.tasks.parameters import (
     OwnRuns,
     Parameter,
     RunsSource,
-    Watched,
+    WatchedRig,
     file_stem,
     optional_rig,
 )
@@ -39,7 +39,7 @@ def compare(
     model: Annotated[Sequence[str], Parameter("Only this model; may come again.", "NAME")] = (),
     runs: Annotated[RunsSource, _RUNS] = None,
     mapping: MappedRuns = None,
-    **watch: Unpack[Watched],
+    **watch: Unpack[WatchedRig],
 ) -> "ComparisonAnswer":
     """Models of friction under vibration against every published test: fitted, cross-validated, and on your rig.
 
@@ -142,7 +142,7 @@ def fit(
     rig: OptionalRig = None,
     mapping: MappedRuns = None,
     model: Annotated[Sequence[str], Parameter("Only this model; may come again.", "NAME")] = (),
-    **watch: Unpack[Watched],
+    **watch: Unpack[WatchedRig],
 ) -> "FitAnswer":
     """Own runs against every applicable model: ranked by what each predicts unseen, and what to measure next.
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
-from typing import Annotated, Any
+from typing import Annotated, Any, Unpack
 
 from sonolube.facts.published import PreviousStudy, previous_studies
 from sonolube.report import Drawing
@@ -11,7 +11,7 @@ from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, Block, answer, si
 from sonolube.tasks.files import NamedBytes
 from sonolube.tasks.own_tables import MappedRuns, runs_of
-from sonolube.tasks.parameters import File, OptionalRig, RunsSource, optional_rig
+from sonolube.tasks.parameters import File, OptionalRig, RigEntries, RunsSource, optional_rig
 from sonolube.tasks.task import task
 from sonolube.text.units import format_si
 from sonolube.validation.previous_study_map import StudyPoint, studies_of_runs, study_chart, study_table
@@ -26,7 +26,11 @@ _TABLE = File(
 
 @task
 def literature(
-    rig: OptionalRig = None, *, table: Annotated[RunsSource, _TABLE] = None, mapping: MappedRuns = None
+    rig: OptionalRig = None,
+    *,
+    table: Annotated[RunsSource, _TABLE] = None,
+    mapping: MappedRuns = None,
+    **entries: Unpack[RigEntries],
 ) -> "LiteratureAnswer":
     """Earlier studies the dissertation reviews, as a list, a table and a map over speed and pressure, with your rig.
 

@@ -27,7 +27,7 @@ from sonolube.report.results.record_object import amplitude_rows, operating_poin
 from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, commanded_quantity, own_level
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 from sonolube.tasks.own_tables import MappedRuns, runs_of
-from sonolube.tasks.parameters import File, Number, Parameter, Quantity, RigFile, RunsSource, Watched, rig_of
+from sonolube.tasks.parameters import File, Number, Parameter, Quantity, RigFile, RunsSource, WatchedRig, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 from sonolube.text.units import format_si, to_si
@@ -298,7 +298,7 @@ def control(
     ] = "model",
     runs: Annotated[RunsSource, _RUNS] = None,
     mapping: MappedRuns = None,
-    **watch: Unpack[Watched],
+    **watch: Unpack[WatchedRig],
 ) -> ControlAnswer:
     """Friction control: a tuned controller, its run in closed loop, its C source and its lookup table.
 

@@ -1,7 +1,7 @@
 """Task `efficiency`: efficiency line of a rig from measured runs, and the power that a friction force requires."""
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any
+from typing import Annotated, Any, Unpack
 
 from sonolube.design.efficiency import EfficiencyCalibration, calibrate_efficiency, efficiency_chart, efficiency_dataset
 from sonolube.report import Drawing, Page
@@ -17,6 +17,7 @@ from sonolube.tasks.parameters import (
     OwnRuns,
     Parameter,
     Quantity,
+    RigChanges,
     RigParameter,
     RigSource,
     file_stem,
@@ -43,6 +44,7 @@ def efficiency(
     ] = None,
     speed: Annotated[Number | None, Quantity("Sliding speed of that target.", "m/s")] = None,
     level: Annotated[float, Parameter("Confidence level.", lowest=0.5, highest=0.9999)] = 0.95,
+    **entries: Unpack[RigChanges],
 ) -> "EfficiencyAnswer":
     """Efficiency line from measured runs by the dissertation's section 4.1, and the power that a friction takes.
 

@@ -28,7 +28,7 @@ from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 from sonolube.tasks.design.chances import CONFIDENCE, TARGET_REDUCTION, target_chance
 from sonolube.tasks.own_evidence import Evidence, evidence_of
 from sonolube.tasks.own_tables import MappedRuns, Values, refuse_replaced, runs_of, values_by_key
-from sonolube.tasks.parameters import File, KeyValues, Number, Parameter, RigFile, RunsSource, Watched, rig_of
+from sonolube.tasks.parameters import File, KeyValues, Number, Parameter, RigFile, RunsSource, WatchedRig, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import refuse_unused, shown, task
 
@@ -77,7 +77,7 @@ def map(  # noqa: A001 - the command's name
         Sequence[Literal["png", "pdf", "svg", "html"]],
         Parameter("png, pdf, svg or an interactive html; may come again."),
     ] = (),
-    **watch: Unpack[Watched],
+    **watch: Unpack[WatchedRig],
 ) -> "MapAnswer":
     """Map of friction reduction: over sliding speed or frequency, and stress, power, voltage or vibration amplitude.
 

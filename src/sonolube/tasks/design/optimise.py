@@ -49,7 +49,7 @@ from sonolube.tasks.parameters import (
     Quantity,
     RestingRig,
     RunsSource,
-    Watched,
+    WatchedRestingRig,
     rig_of,
 )
 from sonolube.tasks.progress import stage
@@ -338,7 +338,7 @@ def optimise(
     source_resistance: Annotated[
         Number | None, Quantity("To match by two elements, such as 50ohm.", "ohm", kind="RESISTANCE")
     ] = None,
-    **watch: Unpack[Watched],
+    **watch: Unpack[WatchedRestingRig],
 ) -> OptimisationAnswer:
     """Design: actuator, frequency, waveform and masses that give a friction for least power, heat or voltage.
 

@@ -1,7 +1,7 @@
 """Task `plan`: the next tests of a rig, replicates and order, protocols, a table to fill and a sheet to print."""
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Unpack
 
 import numpy as np
 
@@ -20,7 +20,18 @@ from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, Block, Rows, Table, answer
 from sonolube.tasks.own_evidence import Evidence, evidence_of
 from sonolube.tasks.own_tables import MappedRuns, runs_of
-from sonolube.tasks.parameters import Disc, File, Number, Parameter, Pin, Quantity, RigFile, RunsSource, rig_of
+from sonolube.tasks.parameters import (
+    Disc,
+    DrivenRigEntries,
+    File,
+    Number,
+    Parameter,
+    Pin,
+    Quantity,
+    RigFile,
+    RunsSource,
+    rig_of,
+)
 from sonolube.tasks.task import in_si, shown, task
 
 _CAPTION = (
@@ -151,6 +162,7 @@ def plan(
     pin: Pin = None,
     disc: Disc = None,
     seed: Annotated[int, Parameter("Of the order of the runs.", lowest=0)] = 0,
+    **entries: Unpack[DrivenRigEntries],
 ) -> PlanAnswer:
     """Plan the next tests of a rig: points that tell models apart, replicates, order, protocols, and a sheet to print.
 

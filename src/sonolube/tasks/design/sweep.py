@@ -38,7 +38,7 @@ from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.storage.files import expect_files
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 from sonolube.tasks.own_tables import MappedRuns, Values, ends_by_key, refuse_replaced, runs_of, values_by_key
-from sonolube.tasks.parameters import File, Keep, KeyValues, Parameter, RigFile, RunsSource, Watched, kept, rig_of
+from sonolube.tasks.parameters import File, Keep, KeyValues, Parameter, RigFile, RunsSource, WatchedRig, kept, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import refuse_unused, shown, task
 from sonolube.text.units import format_si, to_si
@@ -301,7 +301,7 @@ def sweep(
     runs: Annotated[RunsSource, _RUNS] = None,
     mapping: MappedRuns = None,
     keep: Keep = None,
-    **watch: Unpack[Watched],
+    **watch: Unpack[WatchedRig],
 ) -> "SweepAnswer | ParametricStudyAnswer":
     """Sweep: the rig over any of its parameters, or over one quantity; with a status for each point.
 

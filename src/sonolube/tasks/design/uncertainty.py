@@ -32,7 +32,7 @@ from sonolube.tasks.parameters import (
     KeyValues,
     Parameter,
     RigFile,
-    Watched,
+    WatchedRig,
     kept,
     rig_of,
 )
@@ -73,7 +73,7 @@ def uncertainty(
     interval: Interval = True,
     evidence: Evidence = None,
     keep: Annotated[Kept | None, DoorParameter(files="sweep.nc sweep.json")] = None,
-    **watch: Unpack[Watched],
+    **watch: Unpack[WatchedRig],
 ) -> "UncertaintyAnswer":
     """Uncertainty of an outcome from the distributions in the rig's file, and which entry to measure better.
 

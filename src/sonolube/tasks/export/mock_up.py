@@ -19,7 +19,7 @@ from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.tasks.answer import Answer, Block, Rows, answer, si
 from sonolube.tasks.design.control import ClosedLoop, Coupling, Delay, Quality, Rate, resonance_without_structure
 from sonolube.tasks.own_tables import Values, ends_by_key, refuse_replaced
-from sonolube.tasks.parameters import Disc, KeyValues, Number, Parameter, Pin, Quantity, RigFile, Watched, rig_of
+from sonolube.tasks.parameters import Disc, KeyValues, Number, Parameter, Pin, Quantity, RigFile, WatchedRig, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 from sonolube.text.units import format_si
@@ -157,7 +157,7 @@ def fmu(
     disc: Disc = None,
     heat_capacity: Annotated[Number, _CAPACITY] = "1.5J/K",
     conductance: Annotated[Number, _CONDUCTANCE] = "0.05W/K",
-    **watch: Unpack[Watched],
+    **watch: Unpack[WatchedRig],
 ) -> UnitsAnswer:
     """Plant and friction controller as units of the Functional Mock-up Interface (FMI), for Modelica and Simulink.
 

@@ -21,7 +21,7 @@ from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.design import control as loop
 from sonolube.tasks.lab.protocol_run import ControlDoor, device_file, run_stage
 from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, NoSelfTest, RealTime, Seed, Tags
-from sonolube.tasks.parameters import Number, Parameter, Quantity, RigFile, Watched, rig_of
+from sonolube.tasks.parameters import Number, Parameter, Quantity, RigFile, WatchedRig, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 from sonolube.text.units import format_si, to_si
@@ -136,7 +136,7 @@ def hold(
     tag: Tags = (),
     out: AllRuns = RUNS,
     control: ControlDoor = None,
-    **watch: Unpack[Watched],
+    **watch: Unpack[WatchedRig],
 ) -> HoldAnswer:
     """Hold friction at a reference by the controller of `control` while the speed steps, and record it.
 

@@ -44,6 +44,7 @@ from sonolube.tasks.parameters import (
     Parameter,
     RigFile,
     Watched,
+    WatchedRig,
     optional_rig,
     rig_of,
 )
@@ -371,7 +372,7 @@ def virtual(
     ] = "netcdf",
     dry_run: Annotated[bool, Parameter("Tell what will happen and how long it takes, and record nothing.")] = False,
     out: AllRuns = RUNS,
-    **watch: Unpack[Watched],
+    **watch: Unpack[WatchedRig],
 ) -> RunAnswer | DryRunAnswer:
     """Record a realistic test of a rig that exists in its file only, also with the devices of a map.
 

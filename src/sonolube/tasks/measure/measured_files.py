@@ -6,12 +6,13 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from sonolube import report as pages
-from sonolube.errors import SonolubeError, fault_line
+from sonolube.errors import SonolubeError
 from sonolube.measurement.measured_files import selected_files
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.report.measured.sheet import Sheet, sheet_blocks, sheets_dataset
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
+from sonolube.tasks.faults import unexpected
 from sonolube.tasks.files import InputFile, NamedBytes, file_path, with_names_only
 from sonolube.tasks.own_tables import mapping_of
 from sonolube.tasks.parameters import File, Mark, Parameter
@@ -70,7 +71,7 @@ def each_file(
             except Exception as failure:  # a defect at one file must not lose the others
                 if len(paths) == 1:
                     raise
-                refused[with_names_only(str(path))] = with_names_only(fault_line(failure))
+                refused[with_names_only(str(path))] = str(unexpected(failure, title, {"file": path}))
     return sheets, refused
 
 

@@ -30,6 +30,7 @@ from sonolube.tasks.parameters import (
     Parameter,
     Quantity,
     Watched,
+    WatchedRigChanges,
     file_stem,
     optional_rig,
     rig_of,
@@ -113,7 +114,7 @@ def stiffness(
     amplitude_uncertainty: Annotated[
         Number | None, Quantity("Its standard uncertainty, such as 5%.", "", kind="SHARE")
     ] = None,
-    **watch: Unpack[Watched],
+    **watch: Unpack[WatchedRigChanges],
 ) -> "StiffnessAnswer":
     """Normal stiffness of a contact, and its decay length, by the shift of a resonance from free to pressed.
 

@@ -1,7 +1,7 @@
 """Task `predict`: what vibration does to friction and wear on a rig, with intervals, updated by own runs."""
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any, TypeAlias
+from typing import Annotated, Any, TypeAlias, Unpack
 
 from sonolube.measurement.run_columns import runs_help
 from sonolube.prediction.figures import prediction_chart
@@ -16,7 +16,18 @@ from sonolube.rig.datasets import LabelledArrays
 from sonolube.tasks.answer import Answer, Block, Dataset, Table, answer
 from sonolube.tasks.own_evidence import Evidence, evidence_of
 from sonolube.tasks.own_tables import MappedRuns, runs_of
-from sonolube.tasks.parameters import Disc, File, KeyValues, Parameter, Pin, RigFile, RigSource, RunsSource, rig_of
+from sonolube.tasks.parameters import (
+    Disc,
+    File,
+    KeyValues,
+    Parameter,
+    Pin,
+    RigEntries,
+    RigFile,
+    RigSource,
+    RunsSource,
+    rig_of,
+)
 from sonolube.tasks.task import task
 from sonolube.text.units import format_si
 from sonolube.validation.published_tests import FrictionTest
@@ -45,6 +56,7 @@ def predict(
         int, Parameter("Equally probable outcomes, 4000 for two digits of the intervals.", lowest=100, highest=200_000)
     ] = DRAWS,
     seed: Annotated[int, Parameter("Of the draws.", lowest=0)] = 0,
+    **entries: Unpack[RigEntries],
 ) -> "PredictionAnswer":
     """Friction and wear under vibration with 50, 80 and 95 % intervals, and what to measure next.
 

@@ -17,7 +17,17 @@ from sonolube.rig.figures import lubrication_chart, response_chart, start_up_cha
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.rig.responses import response_arrays, start_up_arrays
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, Table, answer, si
-from sonolube.tasks.parameters import Number, Parameter, Quantity, RestingRig, RigFile, Watched, rig_of
+from sonolube.tasks.parameters import (
+    Number,
+    Parameter,
+    Quantity,
+    RestingRig,
+    RestingRigEntries,
+    RigEntries,
+    RigFile,
+    WatchedRig,
+    rig_of,
+)
 from sonolube.tasks.predict.response_curve import ResponseCurveAnswer, followed_curve, rising_range
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, plausible, refuse_unused, shown, task
@@ -40,6 +50,7 @@ def response(
     highest_voltage: Annotated[
         Number | None, Quantity("Highest voltage peak to peak of --curve voltage.", "V", option="--to-voltage")
     ] = None,
+    **entries: Unpack[RestingRigEntries],
 ) -> "ResponseAnswer | ResponseCurveAnswer":
     """Linear response over frequency: tip amplitude per volt and electrical impedance; or the steady vibration.
 
@@ -118,7 +129,7 @@ def transient(
     rig: RigFile,
     *,
     duration: Annotated[Number, Quantity("Time that is integrated.", "s")] = "0.1s",
-    **watch: Unpack[Watched],
+    **watch: Unpack[WatchedRig],
 ) -> "StartUpAnswer":
     """Start-up from rest: settling of the tip's vibration, step by step.
 
@@ -210,6 +221,7 @@ def regime(
     smallest_gain: Annotated[Number, _GAIN] = "0",
     pin: Annotated[str | None, Parameter("Material of the pin, for its wear.", "MATERIAL")] = None,
     disc: Annotated[str | None, Parameter("Material of the disc, for its wear.", "MATERIAL")] = None,
+    **entries: Unpack[RigEntries],
 ) -> "RegimeAnswer":
     """Lubrication regime: dry, vibrated, lubricated or both, and the kind of wear to expect.
 

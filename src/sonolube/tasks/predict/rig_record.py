@@ -36,7 +36,18 @@ from sonolube.rig.responses import simulation_arrays
 from sonolube.rig.simulation import friction_model_named, mechanism_text
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer, si
 from sonolube.tasks.own_evidence import Evidence, evidence_of
-from sonolube.tasks.parameters import Interval, Number, Parameter, Quantity, RestingRig, RigFile, Watched, rig_of
+from sonolube.tasks.parameters import (
+    Interval,
+    Number,
+    Parameter,
+    Quantity,
+    RestingRig,
+    RestingRigEntries,
+    RigEntries,
+    RigFile,
+    WatchedRig,
+    rig_of,
+)
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, plausible, refuse_unused, shown, task
 from sonolube.text.units import format_quantity, format_si
@@ -154,7 +165,10 @@ _STIFFNESS = Parameter(f"Model of the tangential stiffness: {', '.join(TANGENTIA
 
 @task
 def contact(
-    rig: RestingRig, *, tangential_stiffness: Annotated[str, _STIFFNESS] = DEFAULT_TANGENTIAL_STIFFNESS
+    rig: RestingRig,
+    *,
+    tangential_stiffness: Annotated[str, _STIFFNESS] = DEFAULT_TANGENTIAL_STIFFNESS,
+    **entries: Unpack[RestingRigEntries],
 ) -> RigRecord:
     """Contact of the rig at rest: separation, real area, stiffness.
 
@@ -197,6 +211,7 @@ def friction(
     model: Annotated[str | None, _FRICTION_MODEL] = None,
     interval: Interval = True,
     evidence: Evidence = None,
+    **entries: Unpack[RigEntries],
 ) -> RigRecord:
     """Friction of the rig with and without vibration.
 
@@ -234,7 +249,7 @@ def friction(
 
 
 @task
-def wear(rig: RigFile) -> RigRecord:
+def wear(rig: RigFile, **entries: Unpack[RigEntries]) -> RigRecord:
     """Wear of the rig's softer body with and without vibration.
 
     Example: sonolube wear examples/rigs/tribometer.toml
@@ -253,16 +268,16 @@ def wear(rig: RigFile) -> RigRecord:
     result = wear_point(resolved)
     worn = worn_on(known, vibration_amplitude=result.vibration_amplitude)
     rows = [(f"measured {test.label}", worn_text(test)) for test in worn]
-    entries: dict[str, Any] = {"measured": [worn_object(test) for test in worn]} if worn else {}
+    measured: dict[str, Any] = {"measured": [worn_object(test) for test in worn]} if worn else {}
     if result.reason is None:
         errors = wear_model_errors(result.wear_model)
         rows += wear_error_rows(errors)
-        entries |= wear_error_object(errors)
-    return RigRecord(rig=known, result=result, rows=rows, entries=entries, verdict=verdict_of_rig(resolved))
+        measured |= wear_error_object(errors)
+    return RigRecord(rig=known, result=result, rows=rows, entries=measured, verdict=verdict_of_rig(resolved))
 
 
 @task
-def simulate(rig: RigFile, **watch: Unpack[Watched]) -> RigRecord:
+def simulate(rig: RigFile, **watch: Unpack[WatchedRig]) -> RigRecord:
     """Multi-scale model: drive, structure and contact in one steady vibration, and the friction and wear under it.
 
     Example: sonolube simulate examples/rigs/tribometer.toml --set drive.voltage_peak_to_peak=25.9V
@@ -317,6 +332,7 @@ def thermal(
     vibration_heat: Annotated[Number, _VIBRATION_HEAT] = "0W",
     friction_ratio: Annotated[Number | None, _RATIO] = None,
     flash_model: Annotated[str, _FLASH_MODEL] = "quadrature",
+    **entries: Unpack[RigEntries],
 ) -> RigRecord:
     """Heat of friction and vibration: flash, bulk and their share in each body.
 
