@@ -339,3 +339,32 @@ def test_a_value_is_described_briefly_whatever_it_holds() -> None:
         text = described(value)
         assert len(text) <= 200
         assert "\n" not in text
+
+
+@mark.parametrize("head", [b"", b"LabVIEW Measurement\n", b"a,b\n1,2\n"])
+@mark.parametrize("name", ["a.tdms", "a.lvm", "a.csv", "a.mat", "a.toml"])
+def test_a_file_is_judged_by_its_size_and_first_bytes_before_it_is_read(
+    tmp_path: Path, monkeypatch: MonkeyPatch, name: str, head: bytes
+) -> None:
+    def read(*_: object, **__: object) -> NoReturn:
+        raise AssertionError
+
+    monkeypatch.setattr(Path, "read_bytes", read)
+    monkeypatch.setattr("hashlib.file_digest", read)
+    path = tmp_path / name
+    with path.open("wb") as stream:
+        stream.write(head)
+        stream.truncate(3 * 10**9)
+    for function in (sl.measure.friction, sl.measure.surface, sl.measure.impedance, sl.mapping, sl.fit, sl.contact):
+        call: Any = function
+        with raises(SonolubeError, match=re.escape(name)) as refused:
+            call(path)
+        assert not isinstance(refused.value, UnexpectedFault)
+        assert not str(refused.value).endswith(":")
+
+
+@mark.parametrize("title", ["a\nb", "a\r\nb", "a\u2028b"])
+def test_a_title_of_several_lines_is_refused(title: str) -> None:
+    content = RIG.read_text(encoding="utf-8").replace('title = "', f"title = {json.dumps(title)}\n#", 1)
+    with raises(InvalidInput, match="title"):
+        sl.contact(NamedBytes("a.toml", content.encode()))

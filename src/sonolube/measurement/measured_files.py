@@ -20,10 +20,14 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.storage.user_files import open_input
+from sonolube.storage.user_files import LARGEST_INPUT, open_input, require_size
 
 HEAD_SIZE = 8192
 """Number of bytes at the beginning of a file by which its format is detected."""
+
+
+_MIN_ZEROS: Final = 512  # bytes of zero at the beginning of a file of no format
+_LARGEST_WITHOUT_SIGNATURE: Final = 2**26  # bytes of a file whose format is judged by its name alone
 
 
 class FileFormat(Protocol):
@@ -62,7 +66,15 @@ def read_head(path: Path) -> bytes:
         head = stream.read(HEAD_SIZE)
     if not head:
         raise InvalidInput(f"{path}: is empty")
+    if len(head) >= _MIN_ZEROS and not any(head):
+        raise InvalidInput(f"{path}: begins with {len(head)} bytes of zero, as no measured file does; copy it again")
     return head
+
+
+def require_whole(path: Path) -> None:
+    """Refuse a file that is too large to be read as a whole."""
+    with refuse_unreadable(path):
+        require_size(path, LARGEST_INPUT)
 
 
 def detect_format(formats: Sequence[FormatT], head: bytes, path: Path) -> FormatT | None:
@@ -74,9 +86,13 @@ def detect_format(formats: Sequence[FormatT], head: bytes, path: Path) -> Format
     for known in specific:
         if known.recognises(head, path):
             return known
-    for known in specific:
-        if path.suffix.lower() in known.suffixes:
-            return known
+    named = next((known for known in specific if path.suffix.lower() in known.suffixes), None)
+    if named is not None:
+        with refuse_unreadable(path):
+            size = path.stat().st_size
+        if size > _LARGEST_WITHOUT_SIGNATURE and not fallback.recognises(head, path):
+            raise InvalidInput(f"{path}: has {size:,} bytes, but does not begin as {named.name} does; copy it again")
+        return named
     return fallback if fallback.recognises(head, path) else None
 
 

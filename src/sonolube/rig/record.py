@@ -192,6 +192,8 @@ class Rig:
             self.direction.require_amplitude(self.vibration_amplitude)
         if not self.title.strip():
             raise InvalidInput("title must not be empty")
+        if len(self.title.splitlines()) > 1:
+            raise InvalidInput(f"title must be one line, got {self.title[:60]!r}")
 
     def replace(self, key: str, value: str | float) -> "Rig":
         """Rig with one entry of its file replaced.

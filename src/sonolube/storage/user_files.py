@@ -21,7 +21,7 @@ from sonolube.errors import InvalidInput
 from sonolube.operating_system import ON_WINDOWS
 
 LARGEST_INPUT: Final = 2**30
-"""Bytes that a pipe may give; of regular files each reader has its own bound, or reads them in parts."""
+"""Bytes that a pipe may give, and that a file may have which is read as a whole."""
 
 _PATIENCE: Final = 60  # s without a byte, after which a pipe is given up
 _BLOCK: Final = 2**20
@@ -36,7 +36,10 @@ _PIPES: dict[tuple[Path, int, int], bytes] = {}  # what pipes gave, by path, dev
 
 def input_bytes(path: Path, *, most: int = LARGEST_INPUT) -> bytes:
     """Bytes of a file or a pipe."""
-    return _pipe_bytes(path, most) if _is_pipe(path) else path.read_bytes()
+    if _is_pipe(path):
+        return _pipe_bytes(path, most)
+    require_size(path, most)
+    return path.read_bytes()
 
 
 def open_input(path: Path, *, most: int = LARGEST_INPUT) -> io.BytesIO | io.BufferedReader:
@@ -47,7 +50,16 @@ def open_input(path: Path, *, most: int = LARGEST_INPUT) -> io.BytesIO | io.Buff
 def input_text(path: Path, *, most: int = LARGEST_INPUT) -> str:
     """Text of a file or a pipe, UTF-8 with or without a byte order mark; errors as of `input_bytes`."""
     with io.TextIOWrapper(open_input(path, most=most), encoding="utf-8-sig") as stream:
+        if not _is_pipe(path):
+            require_size(path, most)
         return stream.read()
+
+
+def require_size(path: Path, most: int) -> None:
+    """Refuse a regular file that is too large to be read as a whole."""
+    size = path.stat().st_size
+    if size > most:
+        raise OSError(errno.EFBIG, f"has {size:,} bytes, but at most {most:,} are read; save it in parts", str(path))
 
 
 def require_file(path: Path) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.measured_files import FileFormat, detect_format, read_head, refuse_unreadable
+from sonolube.measurement.measured_files import FileFormat, detect_format, read_head, refuse_unreadable, require_whole
 from sonolube.models.surfaces import HeightMap
 from sonolube.storage.user_files import require_file
 from sonolube.text.units import convert, format_si
@@ -211,6 +211,7 @@ def read_surface_file(
         require_file(place)
     formats = tuple(SURFACE_FORMATS.values())
     file_format = detect_format(formats, read_head(place), place) or formats[-1]
+    require_whole(place)
     with refuse_unreadable(place), place.open("rb") as stream:
         digest = hashlib.file_digest(stream, "sha256").hexdigest()
         reading = file_format.read(stream, place)
