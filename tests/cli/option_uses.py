@@ -858,7 +858,7 @@ MODES = {
     "lab check": Mode(
         "lab check", (str(ROOT / "examples" / "lab" / "devices.toml"),), {"--protocol": "map_test"}, ("--connect",)
     ),
-    "mapping": Mode("mapping", (OWN_RUNS,), {"--column": "friction_force [N]=-"}),
+    "mapping": Mode("mapping", (OWN_RUNS,), {"--column": "friction_force [N]=-", "--decimal-sign": ","}),
     "evidence list": Mode("evidence list", ()),
     "evidence check": Mode("evidence check", (OWN_TESTS,)),
     "evidence plot": Mode("evidence plot", (OWN_TESTS,)),

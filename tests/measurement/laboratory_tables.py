@@ -9,6 +9,7 @@ import io
 import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Literal
 from xml.sax.saxutils import escape
 
 FORCES = ("1.72", "1.30", "0.98", "1.01")
@@ -50,12 +51,12 @@ class LaboratoryTable:
     right: Mapping[str, Sequence[float]]
     suffix: str = ".csv"
     statements: Mapping[str, str] = field(default_factory=dict)
-    decimal_sign: str = ""
+    decimal_sign: Literal[".", ","] | None = None
 
     @property
     def is_asked(self) -> bool:
         """Whether a reader has to ask."""
-        return bool(self.statements or self.decimal_sign)
+        return bool(self.statements) or self.decimal_sign is not None
 
 
 def grid(heads: Sequence[str], keys: str) -> Grid:

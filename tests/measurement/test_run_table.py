@@ -10,7 +10,8 @@ from pytest import approx, raises
 from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_runs import read_runs, run_caveats
 from sonolube.measurement.recordings.mapping import mapping_toml, read_mapping
-from sonolube.measurement.run_headings import meaning_at_stake, run_heading
+from sonolube.measurement.run_headings import likely_statements, meaning, meaning_at_stake, run_heading
+from sonolube.measurement.run_numbers import cell_number
 from sonolube.measurement.run_table import run_table
 from sonolube.text.units import to_si
 from sonolube.vocabulary import quantities
@@ -92,12 +93,74 @@ def test_a_table_of_an_instrument_without_runs_is_refused_in_one_line() -> None:
         ("Flächenpressung [MPa]", "nominal_pressure", "MPa"),
         ("Reibkraft (ohne Ultraschall) [N]", "intrinsic_friction_force", "N"),
         ("Temperatur [°C]", "temperature", "°C"),
+        ("COF on", "friction_coefficient", ""),
+        ("mu_0", "intrinsic_friction_coefficient", ""),
+        ("Reibkraft ohne [N]", "intrinsic_friction_force", "N"),
+        ("Friction w/o US [N]", "intrinsic_friction_force", "N"),
+        ("F on / N", "friction_force", "N"),
+        ("[Vpp]", "voltage_peak_to_peak", "V"),
+        ("Spannung [Vss]", "voltage_peak_to_peak", "V"),
     ],
 )
 def test_headings_name_their_quantity_and_unit(label: str, name: str, unit: str) -> None:
     found = run_heading(label)
     assert found is not None
     assert (found.name, found.unit) == (name, unit)
+
+
+@pytest.mark.parametrize(
+    ("label", "statement"),
+    [
+        ("Amplitude pp [um]", "vibration_amplitude um pp"),
+        ("Amplitude zero-to-peak [um]", "vibration_amplitude um"),
+        ("Auslenkung Spitze-Spitze (µm)", "vibration_amplitude µm pp"),
+        ("a [um p-p]", "vibration_amplitude um pp"),
+        ("Drive voltage 0-p [V]", "voltage_peak_to_peak V 0-p"),
+    ],
+)
+def test_headings_say_between_which_peaks_and_their_statements_are_read_back(label: str, statement: str) -> None:
+    found = run_heading(label)
+    assert found is not None
+    assert found.statement == statement
+    assert meaning(statement, label) == found
+
+
+def test_statements_that_are_no_quantity_are_answered_by_likely_ones() -> None:
+    with raises(InvalidInput, match=r"'voltage V' is no quantity; did you mean voltage_peak_to_peak V\?") as refusal:
+        meaning("voltage V", "Spannung")
+    assert len(str(refusal.value)) < 100
+    assert likely_statements("applied load")[0] == "normal_load N"
+
+
+@pytest.mark.parametrize(
+    ("cell", "sign", "value", "digit"),
+    [
+        ("0.30", ".", 0.3, 0.01),
+        ("28", ".", 28.0, 1.0),
+        ("1,50e3", ",", 1500.0, 10.0),
+        ("5'000.0", ".", 5000.0, 0.1),
+        ("1.000,5", ",", 1000.5, 0.1),
+        ("38 %", ".", 38.0, 1.0),
+    ],
+)
+def test_numbers_have_the_worth_of_their_last_digit(cell: str, sign: str, value: float, digit: float) -> None:
+    found = cell_number(cell, sign=sign)
+    assert found is not None
+    assert (found.value, found.digit) == approx((value, digit))
+
+
+@pytest.mark.parametrize("cell", ["", "x", "<0.1", "2.1.3", "1 2", "12.03.2026", "0.2 ± x"])
+def test_other_cells_hold_no_number(cell: str) -> None:
+    assert cell_number(cell, sign=".") is None
+
+
+def test_digits_of_forces_give_the_resolution_of_their_ratio(tmp_path: Path) -> None:
+    # half a digit over sqrt(3) is 0.0028868 N for 0.52 and 0.028868 N for 1.0; r = 0.52:
+    # u = sqrt(0.0028868^2 + (0.52 * 0.028868)^2) / 1.0 = 0.015286
+    runs = read_runs(written(tmp_path, "friction_force [N],intrinsic_friction_force [N]\n0.52,1.0\n"))
+    assert float(runs["friction_reduction_resolution"][0]) == approx(0.015286, rel=1e-4)
+    ratios = read_runs(written(tmp_path, "friction_ratio\n0.30\n"))
+    assert float(ratios["friction_reduction_resolution"][0]) == approx(0.005 / 3**0.5)
 
 
 def test_other_headings_of_the_vocabulary_belong_to_one_quantity_each() -> None:
@@ -110,7 +173,7 @@ def test_unknown_columns_are_left_out_with_one_caveat(tmp_path: Path) -> None:
     content = "Operator,friction_ratio,Humidity [%],#\nAnn,0.5,40,1\n"
     runs = read_runs(written(tmp_path, content))
     assert run_caveats(runs) == ("3 columns are left out: 'Operator', 'Humidity [%]', '#'",)
-    assert set(runs.data_vars) == {"friction_ratio", "friction_reduction"}
+    assert set(runs.data_vars) == {"friction_ratio", "friction_reduction", "friction_reduction_resolution"}
 
 
 @pytest.mark.parametrize(
@@ -122,8 +185,9 @@ def test_unknown_columns_are_left_out_with_one_caveat(tmp_path: Path) -> None:
         ("Oil", "PAO", "column 'Oil' .* a lubricant"),
         ("Einheit", "N", "column 'Einheit' .* a unit"),
         ("mm/s", "3", "column 'mm/s' .* a unit"),
-        ("Voltage [V]", "3", r"column 'Voltage \[V\]' .* a setting"),
-        ("Amplitude p-p [um]", "3", r"column 'Amplitude p-p \[um\]' .* a setting"),
+        ("Voltage [V]", "3", r"a setting.* --column 'Voltage \[V\]=voltage_peak_to_peak V'\)"),
+        ("Schwingweite [um]", "3", r"'Schwingweite \[um\]=vibration_amplitude um pp' or '.*=vibration_amplitude um'"),
+        ("F [N]", "3", r"looks like a force; map it .*'F \[N\]=normal_load N'"),
         ("Load", "3", "line 1: column 'Load' has no unit; expected a force"),
         ("Load [kilo]", "3", r"line 1: column 'Load \[kilo\]'.*unknown unit 'kilo'"),
         ("speed [rpm]", "3", r"line 1: column 'speed \[rpm\]'.* a frequency; expected a speed"),
@@ -209,7 +273,7 @@ def test_rows_that_summarise_others_are_no_runs_and_said(tmp_path: Path) -> None
 
 def test_a_mark_that_may_separate_thousands_is_refused_with_both_readings(tmp_path: Path) -> None:
     path = written(tmp_path, "Normalkraft [mN];v [um/s];Amplitude [nm];Reibkraft [mN]\n5.000;200.000;1.000;1.720\n")
-    with raises(InvalidInput, match=r"'5\.000' may be 5 or 5000: .* text\.decimal_sign in a mapping"):
+    with raises(InvalidInput, match=r"'5\.000' may be 5 or 5000: .* sonolube mapping FILE --decimal-sign ','"):
         read_runs(path)
     for sign, load in ((",", 5.0), (".", 5e-3)):
         mapping = written(tmp_path, f'[text]\ndecimal_sign = "{sign}"\n', "sign.toml")

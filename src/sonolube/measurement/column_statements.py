@@ -10,7 +10,8 @@ from sonolube.measurement.recordings.channels_and_parts import TIME_LABELS, name
 from sonolube.measurement.recordings.mapping import AXIS_QUANTITIES, ChannelSource, RecordingMapping
 from sonolube.measurement.recordings.raw_table import numbered_labels
 from sonolube.measurement.run_columns import TEXT_NAMES
-from sonolube.measurement.run_headings import LEFT_OUT, RunHeading, fits, meaning, run_heading
+from sonolube.measurement.run_headings import LEFT_OUT, STATES, RunHeading, fits, meaning, run_heading, state_column
+from sonolube.measurement.run_numbers import cell_number
 from sonolube.vocabulary import quantities
 
 _MAX_TEXTS: Final = 60  # different cells of a column by which rows are chosen
@@ -65,6 +66,8 @@ def stated_file_columns(
             statement, is_asked = known[label], False
         elif label in without or not label:
             statement, is_asked = LEFT_OUT, False
+        elif state_column([own], [(0, [cell]) for cell in column], ()) is not None:
+            statement, is_asked = STATES, False
         elif is_words:
             found = run_heading(own)
             statement, is_asked = (found.name if found and found.name in TEXT_NAMES else LEFT_OUT), False
@@ -118,12 +121,12 @@ def mapping_of_statements(
     for label, text in statements.items():
         found = _meaning(text, label)
         if not isinstance(found, RunHeading):
-            without.append(label)
+            without += [label] if found == LEFT_OUT else []
             continue
         if found.name in sources:
             raise InvalidInput(f"{sources[found.name].column!r} and {label!r} are both {found.name}", key=label)
-        unit = None if found.name in TEXT_NAMES else found.unit
-        sources[found.name] = replace(before.get(label, ChannelSource(column=label)), unit=unit)
+        source = found.source(label)
+        sources[found.name] = replace(before[label], unit=source.unit) if label in before else source
     axis_quantity = next((name for name in AXIS_QUANTITIES if name in sources), "time")
     axis = sources.pop(axis_quantity, None)
     known = mapping or RecordingMapping(channels={})
@@ -169,13 +172,10 @@ def _by_label(label: str, unit: str) -> tuple[str, bool]:
     found = run_heading(f"{label} [{unit}]" if unit else label)
     if found is None:
         return LEFT_OUT, True
-    return f"{found.name} {found.unit or quantities()[found.name].unit}".strip(), True
+    unit = found.unit or ("" if found.name in TEXT_NAMES else quantities()[found.name].unit)
+    return replace(found, unit=unit).statement, True
 
 
 def _is_number(cell: str) -> bool:
     """Whether a cell is a number with either decimal sign."""
-    try:
-        float(cell.replace(",", "."))
-    except ValueError:
-        return False
-    return True
+    return any(cell_number(cell, sign=sign) is not None for sign in ".,")

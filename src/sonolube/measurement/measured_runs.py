@@ -4,12 +4,12 @@ Friction follows from the columns that give it, in SI, with what was left out; r
 rig are filled in, and copies are reported.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
@@ -130,13 +130,21 @@ def _runs(table: RunTable, path: Path) -> "xr.Dataset":
     """Measured runs of the columns of a table."""
     import xarray as xr
 
-    columns, without = _with_references(dict(table.columns), _FRICTIONS[0])
-    columns, of_coefficients = _with_references(columns, _FRICTIONS[1])
-    without |= of_coefficients
+    columns, digits = dict(table.columns), dict(table.digits)
+    count = len(table.lines)
+    without = np.zeros(count, bool)
+    for name in _FRICTIONS:
+        is_reference = _references(columns, name, table.without)
+        if is_reference.any():
+            _refer(columns, digits, name, is_reference, table.texts.get("run"))
+            without |= is_reference
     _derive_wear(columns)
     reduction = _friction_reductions(path, columns, table.lines)
     columns["friction_reduction"] = reduction
     _derive_uncertainty(columns)
+    resolution = _resolution(columns, digits)
+    if np.isfinite(resolution).any():
+        columns["friction_reduction_resolution"] = resolution
     known = np.isfinite(reduction)
     empty = ~known & ~without
     if not known.any():
@@ -147,38 +155,81 @@ def _runs(table: RunTable, path: Path) -> "xr.Dataset":
     return xr.Dataset(data, attrs={"title": f"{path.name}, in %", "caveats": "\n".join(caveats)})
 
 
+_USED = ("sliding_speed", "normal_load", *_VIBRATIONS, "frequency", "vibration_direction")
+_OF_FRICTION = ("friction_reduction", "friction_ratio", *_FRICTIONS)
+
+
+def runs_text(runs: "xr.Dataset") -> str:
+    """What a table of runs was understood as, in a line: its runs, their settings and the range of their ratios."""
+    ratio = 1 - np.asarray(runs["friction_reduction"].to_numpy(), float)
+    stated = [name for name in _USED if name in runs and np.isfinite(runs[name].to_numpy()).any()]
+    varied = [name for name in stated if np.ptp(runs[name].to_numpy()[np.isfinite(runs[name].to_numpy())]) > 0]
+    constant = [
+        f"{_named(name)} {format_si(float(np.nanmax(runs[name].to_numpy())), quantities()[name].unit)}"
+        for name in stated
+        if name not in varied
+    ]
+    pairs = [name for name in _FRICTIONS if {name, f"intrinsic_{name}"} <= set(runs.data_vars)]
+    by = f"by {_named(pairs[0])} with and without vibration" if pairs else "as stated"
+    given = ", ".join([*map(_named, varied), *constant]) or "no settings"
+    title = str(runs.attrs.get("title", "runs")).removesuffix(", in %")
+    return f"{title}: {ratio.size} runs with {given}; friction ratio {np.min(ratio):.3g} to {np.max(ratio):.3g} {by}"
+
+
+def _named(name: str) -> str:
+    """Name of a column in words."""
+    return name.replace("_", " ")
+
+
 def run_caveats(runs: "xr.Dataset") -> tuple[str, ...]:
     """Caveats of the reading of a table of runs, a line each."""
     return tuple(line for line in str(runs.attrs.get("caveats", "")).split("\n") if line)
 
 
-def _with_references(columns: dict[str, Floats], name: str) -> tuple[dict[str, Floats], np.ndarray]:
-    """Columns with the friction without vibration of rows at amplitude 0 in the others, and which rows these are.
-
-    `name` is that of the friction, a force or a coefficient.
-
-    A row at amplitude 0 serves only those of its speed and load, and is no run of its own.
-    """
+def _references(columns: Mapping[str, Floats], name: str, stated: NDArray[np.bool_] | None) -> NDArray[np.bool_]:
+    """Which rows hold friction without vibration, of a force or a coefficient: as stated, or by an amplitude of 0."""
     count = next(iter(columns.values())).size if columns else 0
-    given = [columns[name] for name in _VIBRATIONS if name in columns]
-    force = columns.get(name, np.full(count, np.nan))
-    without = np.zeros(count, bool)
-    if given:
-        without = np.all([(values == 0) | np.isnan(values) for values in given], axis=0)
-        without &= np.any([values == 0 for values in given], axis=0) & np.isfinite(force)
-    if not without.any():
-        return columns, without
-    settings = np.stack([columns.get(name, np.zeros(count)) for name in ("sliding_speed", "normal_load")], axis=1)
-    intrinsic = columns.get(f"intrinsic_{name}", np.full(count, np.nan)).copy()
-    deviation = columns.get(f"{name}_uncertainty", np.full(count, np.nan))
-    of_intrinsic = columns.get(f"intrinsic_{name}_uncertainty", np.full(count, np.nan)).copy()
+    given = [columns[each] for each in _VIBRATIONS if each in columns]
+    has_friction = np.isfinite(columns.get(name, np.full(count, np.nan)))
+    if stated is not None:
+        return stated & has_friction
+    if not given:
+        return np.zeros(count, bool)
+    none = np.all([(values == 0) | np.isnan(values) for values in given], axis=0)
+    return np.asarray(none & np.any([values == 0 for values in given], axis=0) & has_friction)
+
+
+def _refer(
+    columns: dict[str, Floats],
+    digits: dict[str, Floats],
+    name: str,
+    without: NDArray[np.bool_],
+    runs: Sequence[str] | None,
+) -> None:
+    """Add the friction without vibration of rows that hold it to the others, of which they are no runs.
+
+    A row serves those of its run where it names one that they name too, else those of its speed and load.
+    """
+    count, force = without.size, columns[name]
+    unknown = np.full(count, np.nan)
+    settings = np.stack([columns.get(each, np.zeros(count)) for each in ("sliding_speed", "normal_load")], axis=1)
+    intrinsic = columns.get(f"intrinsic_{name}", unknown).copy()
+    deviation, written = columns.get(f"{name}_uncertainty", unknown), digits.get(name, unknown)
+    of_intrinsic = columns.get(f"intrinsic_{name}_uncertainty", unknown).copy()
+    of_digits = digits.get(f"intrinsic_{name}", unknown).copy()
+    names = np.array(runs) if runs is not None else np.full(count, "")
     for row in np.flatnonzero(np.isnan(intrinsic) & ~without):
-        same = without & np.all(np.isclose(settings, settings[row], rtol=1e-2, equal_nan=True), axis=1)
+        same = without & (names == names[row]) & (names != "")
+        if not same.any():
+            same = without & np.all(np.isclose(settings, settings[row], rtol=1e-2, equal_nan=True), axis=1)
         if same.any():
             intrinsic[row] = np.mean(force[same])
             of_intrinsic[row] = np.sqrt(np.sum(deviation[same] ** 2)) / np.count_nonzero(same)
-    stated = {f"intrinsic_{name}_uncertainty": of_intrinsic} if np.isfinite(of_intrinsic).any() else {}
-    return columns | stated | {f"intrinsic_{name}": intrinsic, name: np.where(without, np.nan, force)}, without
+            of_digits[row] = np.mean(written[same])
+    if np.isfinite(of_intrinsic).any():
+        columns[f"intrinsic_{name}_uncertainty"] = of_intrinsic
+    columns[f"intrinsic_{name}"], digits[f"intrinsic_{name}"] = intrinsic, of_digits
+    columns[name] = np.where(without, np.nan, force)
 
 
 def _friction_reductions(path: Path, columns: dict[str, Floats], lines: Sequence[int]) -> Floats:
@@ -208,16 +259,58 @@ def _derive_wear(columns: dict[str, Floats]) -> None:
             columns["wear_rate_ratio"] = columns["wear_rate"] / columns["intrinsic_wear_rate"]
 
 
+def _of_ratios(columns: Mapping[str, Floats], name: str, deviation: Floats, of_intrinsic: Floats) -> Floats:
+    """Standard uncertainty of the reduction of two frictions, to first order, by independent ones of each."""
+    friction, without = columns[name], columns[f"intrinsic_{name}"]
+    other = np.where(np.isnan(of_intrinsic), 0.0, of_intrinsic)
+    return np.asarray(np.hypot(deviation, friction / without * other) / without)
+
+
 def _derive_uncertainty(columns: dict[str, Floats]) -> None:
-    """Add the standard uncertainty of the reduction where only those of the forces are stated, independent."""
-    names = ("friction_force", "intrinsic_friction_force", "friction_force_uncertainty")
-    if not set(names) <= columns.keys():
-        return
-    force, without, deviation = (columns[name] for name in names)
-    other = columns.get("intrinsic_friction_force_uncertainty", np.zeros(force.size))
-    derived = np.hypot(deviation, force / without * np.where(np.isnan(other), 0.0, other)) / without
-    stated = columns.get("friction_reduction_uncertainty", np.full(force.size, np.nan))
-    columns["friction_reduction_uncertainty"] = np.where(np.isnan(stated), derived, stated)
+    """Add the standard uncertainty of the reduction where only those of forces, coefficients or their zero are stated.
+
+    Frictions are independent but for the zero of the force, which both have: with the ratio r and the force F0 without
+    vibration, its uncertainty times (1 - r) / F0.
+    """
+    for name in _FRICTIONS:
+        if not {name, f"intrinsic_{name}"} <= columns.keys():
+            continue
+        unknown = np.full(columns[name].size, np.nan)
+        of_friction, of_intrinsic = (
+            columns.get(f"{each}_uncertainty", unknown) for each in (name, f"intrinsic_{name}")
+        )
+        derived = _of_ratios(columns, name, of_friction, of_intrinsic)
+        zero = columns.get("force_zero_uncertainty", unknown)
+        if name == _FRICTIONS[0] and np.isfinite(zero).any():
+            shared = np.abs(1 - columns[name] / columns[f"intrinsic_{name}"]) * zero / columns[f"intrinsic_{name}"]
+            derived = np.where(np.isnan(shared), derived, np.hypot(np.nan_to_num(derived), shared))
+        if np.isfinite(derived).any():
+            stated = columns.get("friction_reduction_uncertainty", unknown)
+            columns["friction_reduction_uncertainty"] = np.where(np.isnan(stated), derived, stated)
+
+
+def _resolution(columns: Mapping[str, Floats], digits: Mapping[str, Floats]) -> Floats:
+    """Standard uncertainty of each reduction by the digits of what it follows from; NaN where they are not known."""
+    unknown = np.full(columns["friction_reduction"].size, np.nan)
+    found = unknown
+    for name in ("friction_reduction", "friction_ratio"):
+        found = np.where(np.isnan(found), digits.get(name, unknown), found)
+    for name in _FRICTIONS:
+        if {name, f"intrinsic_{name}"} <= columns.keys():
+            own, intrinsic = digits.get(name, unknown), digits.get(f"intrinsic_{name}", unknown)
+            found = np.where(np.isnan(found), _of_ratios(columns, name, own, intrinsic), found)
+    return found
+
+
+def resolution(runs: "xr.Dataset") -> Floats:
+    """Standard uncertainty of each reduction by the digits as written, zero where they are not known; shape (n,)."""
+    return setting(runs, "friction_reduction_resolution", 0.0)
+
+
+def intrinsic_coefficients(runs: "xr.Dataset", loads: Floats) -> Floats:
+    """Coefficient of friction without vibration of each run: its force over the load, or as stated; shape (n,)."""
+    force, stated = (setting(runs, f"intrinsic_{name}", np.nan) for name in _FRICTIONS)
+    return np.where(np.isnan(force), stated, force / loads)
 
 
 def _skipped(empty: np.ndarray, lines: Sequence[int]) -> str:

@@ -1,19 +1,21 @@
 """Meaning of the columns of a table of runs: quantity and unit by heading or statement, and the mapping of them."""
 
+import difflib
 import re
 import unicodedata
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
-from sonolube.errors import InvalidInput, UnknownName
+from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping, Selection, TextLayout
 from sonolube.measurement.recordings.raw_table import column_of_label, numbered_labels, si_conversion
-from sonolube.measurement.recordings.text_tables import TextTable
+from sonolube.measurement.recordings.text_tables import NumberedCells, TextTable
 from sonolube.measurement.run_columns import RUN_COLUMNS, TEXT_NAMES
+from sonolube.measurement.run_numbers import cell_number
 from sonolube.text.units import COMMON_FACTORS, unit_description
 from sonolube.vocabulary import quantities
 
@@ -22,6 +24,7 @@ _WITH_UNIT: Final = tuple(
     re.compile(rf"(.+?){between}")
     for between in (r"\s*\[([^\[\]]*)\]", r"\s*\(([^()]*)\)", r"\s*/\s*(.+)", r"\s+in\s+(.+)", r"\s*,\s*(.+)")
 )
+_UNIT_WITHIN: Final = re.compile(r"(.*?)\s*\[([^\[\]]*)\]\s*(.*)")
 _LONGEST: Final = 200  # characters of a heading that is looked at
 _DIRECTION: Final = re.compile(
     r"direction|orientation|longitudinal|transvers|perpendicular|angle|richtung|orientierung|längs|\bquer|winkel"
@@ -31,14 +34,35 @@ _LUBRICANT: Final = re.compile(
 )
 _UNIT: Final = re.compile(r"\b(?:units?|einheit(?:en)?)\b")
 _SETTING: Final = re.compile(
-    r"voltage|spannung|amplitude|frequency|frequenz|speed|velocity|geschwindigkeit|drehzahl|rpm"
+    r"voltage|spannung|amplitude|schwing\w*weite|displacement|auslenkung|frequency|frequenz"
+    r"|speed|velocity|geschwindigkeit|drehzahl|rpm"
 )
+_OF_UNIT: Final = {"N": "a force", "V": "a voltage"}  # what a column of unknown heading looks like, by its SI unit
 _NOT_BY_LIKENESS: Final = "direction"  # a text that no estimate uses: only a table that spells it so means that
 _PARTS: Final = ("%", "‰")  # units of pure numbers
 _UNITS: Final = frozenset(
     {unit for factors in COMMON_FACTORS.values() for unit in factors if unit}
     | {"°", "deg", "°c", "degc", "rpm", "1/min", "µm", "μm", "µm/s", "μm/s"}
 )
+_WORD: Final = r"(?<![^\W_])(?:{})(?![^\W_])"
+_PEAK_TO_PEAK: Final = re.compile(
+    _WORD.format(r"p\s?-?\s?p|pk\s?-?\s?pk|peak[\s-]*(?:to[\s-]*)?peak|spitze[\s-]*(?:zu[\s-]*)?(?:spitze|tal)|ss")
+    + r"|(?<=[Vm])_?(?:pp|ss|p-p)(?![^\W_])",
+    re.IGNORECASE,
+)
+_ZERO_TO_PEAK: Final = re.compile(
+    _WORD.format(r"(?:0|zero|null)[\s-]*(?:to[\s-]*)?(?:p|pk|peak|spitze)"), re.IGNORECASE
+)
+_HALF: Final = 0.5  # zero to peak over peak to peak
+_MARKS: Final = {_HALF: "pp", 1 / _HALF: "0-p"}  # of statements, by the gain
+_LENGTHS: Final = ("displacement", "vibration", "Schwingweite", "Schwingungsweite", "Auslenkung", "Schwingweg")
+_VOLTAGES: Final = ("U", "V", "voltage", "drive voltage", "drive", "Spannung", "Anregungsspannung")
+_WITH: Final = frozenset({"on", "with", "mit", "ein", "an"})
+_WITHOUT: Final = frozenset({"off", "without", "ohne", "aus", "no", "kein", "keine"})
+_OF_VIBRATION: Final = frozenset(
+    {"us", "ultrasound", "ultrasonic", "ultrasonics", "ultraschall", "vibration", "vibrations", "schwingung", "vib"}
+)
+_HAVE_STATES: Final = ("friction_force", "friction_coefficient", "wear_rate")
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,24 +75,48 @@ class RunHeading:
         Quantity of the vocabulary, or name of a text.
     unit : str
         As written; empty where none is.
+    gain : float
+        Quantity over what the column has: a half of an amplitude that is written peak to peak.
     """
 
     name: str
     unit: str = ""
+    gain: float = 1.0
+
+    @property
+    def statement(self) -> str:
+        """Quantity and unit as `meaning` reads them."""
+        return " ".join(filter(None, (self.name, self.unit, _MARKS.get(self.gain, ""))))
+
+    def source(self, label: str) -> ChannelSource:
+        """Source of the quantity, the column of a label."""
+        unit = None if self.name in TEXT_NAMES else self.unit
+        if self.gain == 1:
+            return ChannelSource(column=label, unit=unit)
+        return ChannelSource(column=label, unit=unit, gain=self.gain, reading_unit=unit)
 
 
 def run_heading(label: str) -> RunHeading | None:
     """Quantity and unit of the heading of a column; None where it is not known."""
-    text = label.strip()
+    text = " ".join(label.split())
     own = _OWN.fullmatch(text)
     if own and (own[1] in quantities() or own[1] in TEXT_NAMES):
         return RunHeading(own[1], own[2] or "")
     if len(text) > _LONGEST:
         return None
+    if of_peaks := _of_peaks(text):
+        return of_peaks
     with_unit = list(_with_unit(text))
-    whole = _names().get(_plain(text))
-    by_whole = RunHeading(whole) if whole else None
-    return next(filter(fits, with_unit), None) or by_whole or next(iter(with_unit), None)
+    if found := next(filter(fits, with_unit), None) or _of_state(text):
+        return found
+    whole = None if _has_unit_in_brackets(text) else _names().get(_plain(text))
+    return RunHeading(whole) if whole else next(iter(with_unit), None)
+
+
+def _has_unit_in_brackets(text: str) -> bool:
+    """Whether a heading ends in brackets around a unit."""
+    found = re.search(r"[\[(]([^\[\]()]*)[\])]\Z", text)
+    return found is not None and found[1].strip() in _UNITS
 
 
 def fits(found: RunHeading) -> bool:
@@ -76,10 +124,13 @@ def fits(found: RunHeading) -> bool:
     if found.name in TEXT_NAMES:
         return not found.unit
     unit = quantities()[found.name].unit
-    if not found.unit:
-        return not unit
+    return _is_unit_of(found.unit, unit) if found.unit else not unit
+
+
+def _is_unit_of(written: str, unit: str) -> bool:
+    """Whether a written unit is of the kind of an SI unit."""
     try:
-        si_conversion(found.unit, unit=unit, name=found.name)
+        si_conversion(written, unit=unit, name="")
     except InvalidInput:
         return False
     return True
@@ -97,20 +148,96 @@ def meaning_at_stake(label: str) -> str:
         return "a lubricant"
     if _SETTING.search(text) or any(f" {words} " in f" {text} " for words in _settings()):
         return "a setting of the run"
-    return ""
+    written = [unit for _, unit in _splits(label[:_LONGEST]) if unit]
+    kinds = (kind for unit, kind in _OF_UNIT.items() if any(_is_unit_of(each, unit) for each in written))
+    return next(kinds, "")
+
+
+_MAX_LIKELY: Final = 3
+_LEAST_LIKENESS: Final = 0.6
+
+
+def likely_statements(label: str) -> list[str]:
+    """Statements of quantity and unit that a column of unknown meaning may have, the likeliest first."""
+    text = _plain(label)
+    written = [unit for _, unit in _splits(label[:_LONGEST]) if unit]
+    if "weite" in text:
+        unit = next((each for each in written if _is_unit_of(each, "m")), "um")
+        return [f"vibration_amplitude {unit} pp", f"vibration_amplitude {unit}"]
+    scores: list[tuple[float, str]] = []
+    for column in RUN_COLUMNS:
+        if column.is_text or column.name.endswith("_uncertainty"):
+            continue
+        known = quantities()[column.name]
+        unit = next(
+            (each for each in written if known.unit and each not in _PARTS and _is_unit_of(each, known.unit)), ""
+        )
+        names = [_plain(each) for each in (column.name, *known.also)]
+        likeness = max(difflib.SequenceMatcher(None, text, each).ratio() for each in names)
+        likeness = max([likeness, *(0.9 for each in names if len(each) > 2 and f" {each} " in f" {text} ")])
+        if unit or (likeness >= _LEAST_LIKENESS and not _has_unit_in_brackets(label)):
+            scores.append((likeness + bool(unit), f"{column.name} {unit or column.unit}".strip()))
+    return [statement for _, statement in sorted(scores, key=lambda each: -each[0])[:_MAX_LIKELY]]
+
+
+def _splits(text: str) -> Iterator[tuple[str, str]]:
+    """Words before and after a unit with that unit, as a heading may be read; without a unit last."""
+    for pattern in _WITH_UNIT:
+        if found := pattern.fullmatch(text):
+            yield found[1], found[2].strip()
+    if found := _UNIT_WITHIN.fullmatch(text):
+        yield f"{found[1]} {found[3]}", found[2].strip()
+    for gap in reversed(list(re.finditer(r"[\s_]+", text))):
+        yield text[: gap.start()], text[gap.end() :]
+    yield text, ""
 
 
 def _with_unit(text: str) -> Iterator[RunHeading]:
     """Headings of a known name before a unit; behind a blank or an underscore only what is a unit of the quantity."""
-    for pattern in _WITH_UNIT:
-        if (found := pattern.fullmatch(text)) and (name := _names().get(_plain(found[1]))):
-            yield RunHeading(name, found[2].strip())
+    for pattern in (*_WITH_UNIT, _UNIT_WITHIN):
+        if found := pattern.fullmatch(text):
+            words = _plain(" ".join((found[1], *found.groups()[2:])))
+            each = RunHeading(_names()[words], found[2].strip()) if words in _names() else None
+            if each is not None and (len(words) > 1 or fits(each)):  # one letter stands for many things
+                yield each
     for gap in reversed(list(re.finditer(r"[\s_]+", text))):
         if name := _names().get(_plain(text[: gap.start()])):
             found_behind = RunHeading(name, text[gap.end() :])
             is_number = name not in TEXT_NAMES and not quantities()[name].unit
             if fits(found_behind) and (not is_number or found_behind.unit in _PARTS):
                 yield found_behind
+
+
+def _of_peaks(text: str) -> RunHeading | None:
+    """Amplitude or voltage by a heading that says between which peaks it is; None where it does not."""
+    is_swing = _PEAK_TO_PEAK.search(text) is not None
+    pattern = _PEAK_TO_PEAK if is_swing else _ZERO_TO_PEAK
+    if not pattern.search(text):
+        return None
+    rest = re.sub(r"\[\s*\]|\(\s*\)", "", pattern.sub(" ", text)).strip(" ,;-_")
+    found: list[RunHeading] = []
+    for words, unit in [*_splits(rest), ("", rest.strip("[]() "))]:
+        base, written = _plain(words), unit.strip()
+        if base in _amplitudes():
+            found.append(RunHeading("vibration_amplitude", written, _HALF if is_swing else 1.0))
+        if base in _voltages():
+            found.append(RunHeading("voltage_peak_to_peak", written, 1.0 if is_swing else 1 / _HALF))
+    return next(filter(fits, found), None) or next((each for each in found if not each.unit), None)
+
+
+def _of_state(text: str) -> RunHeading | None:
+    """Friction or wear with or without vibration by a heading that says so; None where it does not."""
+    spelled = re.sub(r"\bw/o\b", "without", text, flags=re.IGNORECASE)
+    found: list[RunHeading] = []
+    for words, unit in _splits(spelled):
+        tokens = _plain(words).split()
+        stated = [each for each in tokens if each in _WITH | _WITHOUT | _OF_VIBRATION]
+        base = " ".join(each for each in tokens if each not in stated)
+        name = "friction_force" if base == "f" else _names().get(base, "")
+        if stated and name in _HAVE_STATES:
+            is_without = not _WITHOUT.isdisjoint(stated)
+            found.append(RunHeading(f"intrinsic_{name}" if is_without else name, unit))
+    return next(filter(fits, found), None) or next((each for each in found if not each.unit), None)
 
 
 def _plain(text: str) -> str:
@@ -130,6 +257,18 @@ def _names() -> dict[str, str]:
 
 
 @cache
+def _amplitudes() -> frozenset[str]:
+    """Words for the amplitude of a vibration beside those for its peaks."""
+    return frozenset({"", *map(_plain, (*_LENGTHS, "vibration_amplitude", *quantities()["vibration_amplitude"].also))})
+
+
+@cache
+def _voltages() -> frozenset[str]:
+    """Words for the voltage of the drive beside those for its peaks."""
+    return frozenset({"", *map(_plain, (*_VOLTAGES, *quantities()["voltage_peak_to_peak"].also))})
+
+
+@cache
 def _settings() -> tuple[str, ...]:
     """Headings of what is set in a run, in plain words of four letters or more."""
     names = [column.name for column in RUN_COLUMNS if not (column.is_text or column.is_result)]
@@ -137,13 +276,48 @@ def _settings() -> tuple[str, ...]:
     return tuple(sorted(words for words in every if len(words) >= 4))
 
 
+_STATES: Final = {
+    **dict.fromkeys(("on", "ein", "an", "with", "mit", "1", "yes", "ja", "true", "x"), True),
+    **dict.fromkeys(("off", "aus", "without", "ohne", "0", "no", "nein", "false", ""), False),
+}  # whether a row is with vibration, by the word in a column of states
+_IS_STATE: Final = re.compile(
+    r"ultraso|ultrascha|\bus\b|vibration|schwingung|\bstate|zustand|sonotrod|excitation|anregung"
+    r"|on ?/ ?off|(?:ein|an) ?/ ?aus"
+)
+
+
+def state_column(labels: Sequence[str], rows: Sequence[NumberedCells], taken: Collection[str]) -> int | None:
+    """Place of the column that says of each row whether it is with vibration; None where none does."""
+    for place, (label, numbered) in enumerate(zip(labels, numbered_labels(labels), strict=True)):
+        words = {_state_word(cells, place) for _, cells in rows}
+        if label in taken or numbered in taken or len(words) != len({True, False}) or not words <= _STATES.keys():
+            continue
+        is_named = _IS_STATE.search(label.casefold()) is not None and run_heading(label) is None
+        if is_named and len({_STATES[word] for word in words}) > 1:
+            return place
+    return None
+
+
+def is_without_vibration(cells: Sequence[str], place: int) -> bool:
+    """Whether a row is without vibration, by the column of states."""
+    return not _STATES[_state_word(cells, place)]
+
+
+def _state_word(cells: Sequence[str], place: int) -> str:
+    """Word for the state in a row."""
+    return cells[place].strip().casefold() if place < len(cells) else ""
+
+
 LEFT_OUT: Final = "-"
 """Statement that leaves a column out."""
+
+STATES: Final = "with or without vibration"
+"""Meaning of a column that says so of each row."""
 
 _MAX_CELLS: Final = 3  # that tell what a column holds
 
 Meaning = RunHeading | str
-"""Quantity and unit of a column, or `LEFT_OUT`."""
+"""Quantity and unit of a column, `STATES` or `LEFT_OUT`."""
 
 
 def stated_columns(table: TextTable, statements: Mapping[str, str], path: Path) -> dict[str, Meaning | None]:
@@ -153,25 +327,51 @@ def stated_columns(table: TextTable, statements: Mapping[str, str], path: Path) 
         place = labels.index("") + 1
         raise InvalidInput(f"{path}: line {table.line}: column {place} has no heading; name it, or delete the column")
     known = {label: label for label in labels}
-    stated = {column_of_label(known, label, path): meaning(text, label) for label, text in statements.items()}
-    return {label: stated.get(label) or _by_heading(own) for label, own in zip(labels, table.labels, strict=True)}
+    found: dict[str, Meaning | None] = {
+        label: _by_heading(own) for label, own in zip(labels, table.labels, strict=True)
+    }
+    for place, label in enumerate(labels):
+        if found[label] is None and _has_its_units(table, place):
+            found[label] = run_heading(table.labels[place])
+    found |= {column_of_label(known, label, path): meaning(text, label) for label, text in statements.items()}
+    if (place_of_states := state_column(table.labels, table.rows, statements)) is not None:
+        found[labels[place_of_states]] = STATES
+    return found
+
+
+def _has_its_units(table: TextTable, place: int) -> bool:
+    """Whether the heading of a column is known but for a unit, which every filled cell has."""
+    if (found := run_heading(table.labels[place])) is None or found.unit or found.name in TEXT_NAMES:
+        return False
+    cells = [cells[place].strip() for _, cells in table.rows if "".join(cells[place : place + 1]).strip()]
+    units = [stated.unit for cell in cells if (stated := cell_number(cell, sign="." if "." in cell else ","))]
+    return bool(cells) and len(units) == len(cells) and all(units)
 
 
 def meaning(text: str, label: str) -> Meaning:
-    """Quantity and unit that a text such as "friction_force N" states, or `LEFT_OUT`."""
-    if text.strip() == LEFT_OUT:
-        return LEFT_OUT
+    """Quantity and unit that a text such as "friction_force N" states, `STATES` or `LEFT_OUT`."""
+    if text.strip() in (LEFT_OUT, STATES):
+        return text.strip()
     name, _, unit = text.strip().partition(" ")
     found = run_heading(text)
     if name in quantities() or name in TEXT_NAMES:
-        found = RunHeading(name, unit.strip(" []()"))
+        found = _stated(name, unit.strip(" []()"))
     if found is None:
-        raise UnknownName.among((*quantities(), *TEXT_NAMES), kind=f"quantity of column {label!r}:", name=name)
+        likely = likely_statements(text) or likely_statements(label) or ["friction_force N"]
+        raise InvalidInput(f"column {label!r}: {text!r} is no quantity; did you mean {' or '.join(likely)}?")
     if not fits(found):
         unit = "" if found.name in TEXT_NAMES else quantities()[found.name].unit
         expected = unit_description(unit) if unit else "none"
         raise InvalidInput(f"column {label!r}: {text!r} has no unit of {found.name}; expected {expected}")
     return found
+
+
+def _stated(name: str, unit: str) -> RunHeading:
+    """Quantity with a unit behind which "pp" or "0-p" may stand."""
+    for gain, mark in _MARKS.items():
+        if unit.endswith(f" {mark}") and name == ("vibration_amplitude" if gain < 1 else "voltage_peak_to_peak"):
+            return RunHeading(name, unit.removesuffix(mark).strip(), gain)
+    return RunHeading(name, unit)
 
 
 def samples(table: TextTable, label: str) -> list[str]:
@@ -187,17 +387,13 @@ def _by_heading(label: str) -> RunHeading | None:
     return found if found is not None and fits(found) else None
 
 
-def mapping_of_columns(table: TextTable, columns: Mapping[str, Meaning]) -> RecordingMapping:
+def mapping_of_columns(table: TextTable, columns: Mapping[str, Meaning], *, decimal_sign: str = "") -> RecordingMapping:
     """Mapping of the columns of a table; a time is the axis, which tables of runs have no use for."""
-    sources = {
-        found.name: ChannelSource(column=label, unit=None if found.name in TEXT_NAMES else found.unit)
-        for label, found in columns.items()
-        if isinstance(found, RunHeading)
-    }
+    sources = {found.name: found.source(label) for label, found in columns.items() if isinstance(found, RunHeading)}
     axis = sources.pop("time", None)
     return RecordingMapping(
         channels=MappingProxyType(sources),
         axis=axis,
         selection=Selection(without=tuple(label for label, found in columns.items() if found == LEFT_OUT)),
-        text=TextLayout(lines_to_skip=table.line - 1),
+        text=TextLayout(lines_to_skip=table.line - 1, decimal_sign=decimal_sign),
     )

@@ -1,17 +1,18 @@
-"""Tables of runs as text files: the columns by a mapping or by their headings, numbers in SI, texts as they are."""
+"""Tables of runs as text files or spreadsheets: columns by a mapping or their headings, numbers in SI, and texts."""
 
-import io
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.measured_files import detected_decimal_sign, parse_number, read_head
+from sonolube.measurement.measured_files import read_head
 from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping, TextLayout
 from sonolube.measurement.recordings.raw_table import column_of_label, numbered_labels, si_conversion
 from sonolube.measurement.recordings.text_recordings import DelimitedText
@@ -23,26 +24,37 @@ from sonolube.measurement.recordings.text_tables import (
     text_tables,
 )
 from sonolube.measurement.run_columns import DIRECTION_COLUMN, DIRECTION_WORDS, TEXT_NAMES, heading
-from sonolube.measurement.run_headings import fits, meaning_at_stake, run_heading
+from sonolube.measurement.run_headings import (
+    LEFT_OUT,
+    is_without_vibration,
+    likely_statements,
+    meaning_at_stake,
+    run_heading,
+    state_column,
+)
+from sonolube.measurement.run_layout import LaidOut, laid_out, laid_out_text
+from sonolube.measurement.run_numbers import OF_A_DIGIT, CellNumber, cell_number, decimal_sign_of
+from sonolube.measurement.spreadsheets import is_spreadsheet, spreadsheet_rows
 from sonolube.text.units import unit_description
 from sonolube.vocabulary import quantities
 
-_PREAMBLE: Final = re.compile(r'"?\s*(?:[#%](?!\s*[;,\t|])|//)|[\s;,"|]*\Z')  # comments, and lines without any text
-_SEPARATOR_LINE: Final = re.compile(r"sep=(.)", re.IGNORECASE)  # with which Excel tells its separator
 _SUMMARIES: Final = frozenset(
     {
         *("mean", "mean value", "average", "avg", "median", "mittel", "mittelwert", "mw", "durchschnitt"),
         *("sd", "s.d", "std", "std dev", "stdev", "standard deviation", "stabw", "stdabw", "standardabweichung"),
         *("sem", "standard error", "cv", "variance", "varianz", "min", "minimum", "max", "maximum"),
-        *("sum", "summe", "total", "gesamt"),
+        *("sum", "summe", "total", "gesamt", "ø", "⌀", "x̄", "σ"),
     }
 )
-_THOUSANDS: Final = re.compile(r"[-+]?[1-9]\d{0,2}([.,])\d{3}(?:\1\d{3})*")
+_UNCERTAINTY_OF: Final = {"friction_ratio": "friction_reduction_uncertainty"}
+_NO_HEADING: Final = re.compile(r"column \d+")
+_NO_NUMBER: Final = CellNumber(float("nan"), float("nan"))
+_ARCHIVE: Final = b"PK\x03\x04"
+_UTF_16: Final = (b"\xff\xfe", b"\xfe\xff")
 _LARGEST: Final = 1e30  # in any unit; keeps squares of quantities within the range of floats
 _MAX_RUNS: Final = 100_000
 _QUOTED: Final = 40  # characters of a cell in an error message
 _MAX_NAMED: Final = 12  # columns in a caveat
-_SPREADSHEET: Final = b"PK\x03\x04"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -58,13 +70,19 @@ class RunTable:
     lines : list of int
         Of the file, for each row.
     caveats : tuple of str
-        Assumptions of the reader, and columns that are left out.
+        Assumptions of the reader, and lines and columns that are left out.
+    digits : mapping of str to ndarray, shape (rows,)
+        Standard uncertainties of the columns by their digits as they are written, in SI.
+    without : ndarray of bool, shape (rows,), or None
+        Whether a column says that a row is without vibration; None where no column says so.
     """
 
     columns: Mapping[str, Floats]
     texts: Mapping[str, list[str]]
     lines: list[int]
     caveats: tuple[str, ...] = ()
+    digits: Mapping[str, Floats] = field(default_factory=lambda: MappingProxyType({}))
+    without: NDArray[np.bool_] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,46 +101,78 @@ class _Column:
 
 
 def run_table(path: Path, *, mapping: RecordingMapping | None = None) -> RunTable:
-    """Columns of a table of runs in a text file."""
-    table, caveats = run_text(path, mapping)
-    found = assigned_columns(path, table.line, table.labels, table.rows, mapping=mapping, separator=table.separator)
-    return replace(found, caveats=(*caveats, *found.caveats))
+    """Columns of a table of runs in a text file or a spreadsheet."""
+    found, caveats = _found(path, mapping)
+    columns = assigned_columns(
+        path,
+        found.table.line,
+        found.table.labels,
+        found.table.rows,
+        mapping=mapping,
+        separator=found.table.separator,
+        place="column" if found.is_turned else "line",
+    )
+    return replace(columns, caveats=(*caveats, *columns.caveats))
 
 
 def run_text(path: Path, mapping: RecordingMapping | None = None) -> tuple[TextTable, tuple[str, ...]]:
-    """Labels and rows of the text of a table of runs, with the caveats of its decoding; parameters as `run_table`."""
+    """Labels and rows of a table of runs, with the caveats of its decoding and layout; parameters as `run_table`."""
+    found, caveats = _found(path, mapping)
+    return found.table, caveats
+
+
+def _found(path: Path, mapping: RecordingMapping | None) -> tuple[LaidOut, tuple[str, ...]]:
+    """Table of a file, with the caveats of its decoding and its layout."""
     head = read_head(path)
-    if head.startswith(_SPREADSHEET):
-        raise InvalidInput(f"{path}: is a spreadsheet or archive; save the table as CSV")
-    if not DelimitedText().recognises(head, path):
-        raise InvalidInput(f"{path}: not a table of comma-separated values")
-    layout = mapping.text if mapping else TextLayout()
-    text, caveats = decoded_text(path, encoding=layout.encoding)
-    if not (layout.lines_to_skip or layout.header or layout.section):
-        layout = _below_preamble(text, layout)
-    tables = text_tables(text, layout, mapping.selection.sections if mapping else (), path, allows_short_rows=True)
-    if len(tables) > 1:
-        raise InvalidInput(f"{path}: has {len(tables)} sections; choose one by selection.sections of the mapping")
-    table = tables[0] if layout.units_row else _with_units(tables[0])
+    if head.startswith(_ARCHIVE):
+        if not is_spreadsheet(path):
+            raise InvalidInput(f"{path}: is an archive; unpack it, and save the table as CSV")
+        found, caveats = _sheet(path, mapping)
+    else:
+        if not (DelimitedText().recognises(head, path) or head[:2] in _UTF_16):
+            raise InvalidInput(f"{path}: not a table of comma-separated values")
+        found, caveats = _text(path, mapping)
+    table = found.table
     if not table.rows:
         raise InvalidInput(f"{path}: needs a head and at least one run")
     if len(table.rows) > _MAX_RUNS:
         raise InvalidInput(f"{path}: has {len(table.rows)} rows, but at most {_MAX_RUNS} runs are read")
     require_rows(table, mapping.rows if mapping else {}, path)
-    return table, caveats
+    return found, (*caveats, *found.left_out)
 
 
-def _with_units(table: TextTable) -> TextTable:
-    """Table whose labels have the units of the row below them, where that row holds units and nothing else."""
-    if not table.rows:
-        return table
-    cells = [cell.strip(" []()") for cell in table.rows[0][1]]
-    meant = [(run_heading(f"{label} [{cell}]"), cell) for label, cell in zip(table.labels, cells, strict=False)]
-    stated = [found for found, cell in meant if cell and found is not None and found.name not in TEXT_NAMES]
-    if len(stated) < 2 or not all(map(fits, stated)) or any(parse_number(cell, decimal_sign=".") for cell in cells):
-        return table
-    labels = [f"{label} [{cell}]" if cell else label for label, cell in zip(table.labels, cells, strict=False)]
-    return replace(table, labels=labels + table.labels[len(labels) :], rows=table.rows[1:])
+def _text(path: Path, mapping: RecordingMapping | None) -> tuple[LaidOut, tuple[str, ...]]:
+    """Table of a text, by its own layout or that of a mapping."""
+    layout = mapping.text if mapping else TextLayout()
+    sections = mapping.selection.sections if mapping else ()
+    text, caveats = decoded_text(path, encoding=layout.encoding)
+    has_layout = layout.header or layout.section or layout.units_row or layout.comment or layout.ends_at_blank_line
+    if not (has_layout or sections):
+        return laid_out_text(text, layout, path), caveats
+    tables = text_tables(text, layout, sections, path, allows_short_rows=True)
+    if len(tables) > 1:
+        raise InvalidInput(f"{path}: has {len(tables)} sections; choose one by selection.sections of the mapping")
+    return LaidOut(table=tables[0], left_out=(), is_turned=False, is_headless=False, known=0), caveats
+
+
+def _sheet(path: Path, mapping: RecordingMapping | None) -> tuple[LaidOut, tuple[str, ...]]:
+    """Table of the sheet whose headings name the most quantities, or that a mapping selects."""
+    sheets = spreadsheet_rows(path)
+    sections = mapping.selection.sections if mapping else ()
+    if unknown := [name for name in sections if name not in sheets]:
+        raise InvalidInput(f"{path}: has no sheet {unknown[0]!r} with cells; it has {', '.join(sheets) or 'none'}")
+    tables = {name: laid_out(rows, path, separator="") for name, rows in sheets.items() if name in (sections or sheets)}
+    if not tables:
+        raise InvalidInput(f"{path}: is empty")
+    most = max(found.known for found in tables.values())
+    best = [name for name, found in tables.items() if found.known == most]
+    if len(best) > 1:
+        raise InvalidInput(
+            f"{path}: sheets {best[0]!r} and {best[1]!r} may both be the table; choose one by"
+            f' selection.sections = ["{best[0]}"] in a mapping, or delete the other'
+        )
+    caveat = f"of {len(sheets)} sheets only {best[0]!r} is read"
+    return tables[best[0]], (caveat,) if len(sheets) > 1 and not sections else ()
 
 
 def assigned_columns(
@@ -133,63 +183,81 @@ def assigned_columns(
     *,
     mapping: RecordingMapping | None = None,
     separator: str = ",",
+    place: str = "line",
 ) -> RunTable:
-    """Columns of a table of runs by its labels and rows."""
-    rows, summaries = _runs_and_summaries(rows)
+    """Columns of a table of runs by its labels and rows, whose numbers are those of lines, or of columns."""
+    rows, summaries = _runs_and_summaries(rows, place)
     if not rows:
         raise InvalidInput(f"{path}: needs a head and at least one run")
     mapped = _by_mapping(path, labels, mapping) if mapping else []
-    others, left_out = _by_headings(path, line, labels, mapped, mapping)
+    taken = {*(each.source.column for each in mapped), *(mapping.selection.without if mapping else ())}
+    state = state_column(labels, rows, taken)
+    others, left_out = _by_headings(path, line, labels, mapped, mapping, state)
     layout = mapping.text if mapping else TextLayout()
     numbers = [each for each in (*mapped, *others) if each.name not in TEXT_NAMES]
     words = [each for each in (*mapped, *others) if each.name in TEXT_NAMES]
     filled = [_cell(cells, each.place) for _, cells in rows for each in numbers]
-    sign = layout.decimal_sign or ("." if separator == "," else _decimal_sign(path, filled))
-    missing = frozenset(layout.missing)
+    has_only_points = separator in (",", "") and not any("," in cell for cell in filled)
+    sign = layout.decimal_sign or ("." if has_only_points else decimal_sign_of(filled, path))
+    cells = _Cells(path=path, line=line, sign=sign, missing=frozenset(layout.missing), place=place)
     texts = {each.name: [_cell(cells, each.place) for _, cells in rows] for each in words}
-    directions = [_word(cells, each) for each in numbers for _, cells in rows if each.name == DIRECTION_COLUMN]
+    directions = [_word(row, each) for each in numbers for _, row in rows if each.name == DIRECTION_COLUMN]
+    read = {each.name: cells.in_si(each, rows) for each in numbers}
+    columns = {name: found.values for name, found in read.items()}
+    stated, unused = _stated_uncertainties(read, columns)
+    halved = tuple(_gain_caveat(each) for each in (*mapped, *others) if _is_of_other_peaks(each))
     return RunTable(
-        columns={each.name: _in_si(path, line, each, rows, sign, missing) for each in numbers},
+        columns=columns | stated,
         texts=texts | ({f"{DIRECTION_COLUMN}_word": directions} if any(directions) else {}),
         lines=[number for number, _ in rows],
-        caveats=(*summaries, *left_out_caveat(left_out)),
+        caveats=(*summaries, *halved, *unused, *left_out_caveat(left_out)),
+        digits={name: found.digits for name, found in read.items()},
+        without=None if state is None else np.array([is_without_vibration(cells, state) for _, cells in rows]),
     )
 
 
-def _runs_and_summaries(rows: Sequence[NumberedCells]) -> tuple[Sequence[NumberedCells], tuple[str, ...]]:
+def _stated_uncertainties(
+    read: Mapping[str, "_Read"], columns: Mapping[str, Floats]
+) -> tuple[dict[str, Floats], list[str]]:
+    """Columns of the uncertainties that stand beside numbers in cells, and caveats on them."""
+    stated: dict[str, Floats] = {}
+    caveats = []
+    for name, found in read.items():
+        if not np.isfinite(found.uncertainties).any():
+            continue
+        own = _UNCERTAINTY_OF.get(name, f"{name}_uncertainty")
+        if own in columns or own not in quantities():
+            caveats.append(f"the uncertainties behind {name} are left out")
+        else:
+            stated[own] = found.uncertainties
+            caveats.append(f"what stands behind +- in {name} is taken as its standard uncertainty")
+    return stated, caveats
+
+
+def _is_of_other_peaks(column: _Column) -> bool:
+    """Whether the heading of a column says other peaks than its quantity has, and it is read so."""
+    found = run_heading(column.source.column)
+    return found is not None and found.gain == column.source.gain != 1
+
+
+def _gain_caveat(column: _Column) -> str:
+    """Caveat on an amplitude or a voltage that is read from between other peaks."""
+    told = "peak to peak: the amplitude is half of it" if column.source.gain < 1 else "zero to peak, and doubled"
+    return f"{_quoted(column.source.column)} is read as {told}"
+
+
+def _runs_and_summaries(rows: Sequence[NumberedCells], place: str) -> tuple[Sequence[NumberedCells], tuple[str, ...]]:
     """Rows of runs, and a caveat on each row that summarises others."""
     words = {number: next((cell for cell in cells if _is_summary(cell)), "") for number, cells in rows}
-    caveats = tuple(f"line {number} is no run and left out: {_quoted(word)}" for number, word in words.items() if word)
+    caveats = tuple(
+        f"{place} {number} is no run and left out: {_quoted(word)}" for number, word in words.items() if word
+    )
     return [(number, cells) for number, cells in rows if not words[number]], caveats
 
 
 def _is_summary(cell: str) -> bool:
     """Whether a cell marks its row as a summary of others, such as a mean."""
     return len(cell) <= _QUOTED and cell.strip(" .:*()[]=\t").casefold() in _SUMMARIES
-
-
-def _decimal_sign(path: Path, cells: Sequence[str]) -> str:
-    """Decimal sign of the numbers of a table; refuse a mark that may as well separate thousands."""
-    marked = [cell for cell in cells if "," in cell or "." in cell]
-    if marked and all(_THOUSANDS.fullmatch(cell) for cell in marked):
-        small, large = float(marked[0].replace(",", ".")), re.sub(r"\D", "", marked[0])
-        raise InvalidInput(
-            f"{path}: {_quoted(marked[0])} may be {small:g} or {large}: each number with a mark has three digits behind"
-            " it; state text.decimal_sign in a mapping, or write one of them with other digits"
-        )
-    return detected_decimal_sign(cells)
-
-
-def _below_preamble(text: str, layout: TextLayout) -> TextLayout:
-    """Layout with the lines before the headings to skip, and the separator that one of them states."""
-    skipped = 0
-    for text_line in io.StringIO(text, newline=""):
-        if stated := _SEPARATOR_LINE.fullmatch(text_line.strip("\r\n")):
-            layout = replace(layout, separator=layout.separator or stated[1])
-        elif not _PREAMBLE.match(text_line):
-            break
-        skipped += 1
-    return replace(layout, lines_to_skip=skipped)
 
 
 def _by_mapping(path: Path, labels: Sequence[str], mapping: RecordingMapping) -> list[_Column]:
@@ -203,7 +271,12 @@ def _by_mapping(path: Path, labels: Sequence[str], mapping: RecordingMapping) ->
 
 
 def _by_headings(
-    path: Path, line: int, labels: Sequence[str], mapped: Sequence[_Column], mapping: RecordingMapping | None
+    path: Path,
+    line: int,
+    labels: Sequence[str],
+    mapped: Sequence[_Column],
+    mapping: RecordingMapping | None,
+    state: int | None,
 ) -> tuple[list[_Column], list[str]]:
     """Other columns by their headings, and labels of those left out; of unknown meaning, refused where it matters."""
     places, names = {each.place for each in mapped}, {each.name for each in mapped}
@@ -215,7 +288,7 @@ def _by_headings(
     left_out: list[str] = []
     known: dict[str, str] = {}
     for place, (label, numbered) in enumerate(zip(labels, numbered_labels(labels), strict=True)):
-        if place in places:
+        if place in places or place == state:
             continue
         found = run_heading(label)
         if not without.isdisjoint((label, numbered)) or (found is not None and found.name in names):
@@ -229,7 +302,7 @@ def _by_headings(
                 both = "" if first == label else f", {_quoted(first)} and {_quoted(label)}"
                 raise InvalidInput(f"{path}: two columns are named {found.name}{both}")
             known[found.name] = label
-            columns.append(_Column(found.name, place, ChannelSource(column=label, unit=found.unit)))
+            columns.append(_Column(found.name, place, replace(found.source(label), unit=found.unit)))
     return columns, left_out
 
 
@@ -237,45 +310,92 @@ def _require_harmless(path: Path, line: int, place: int, label: str) -> None:
     """Refuse a column of unknown meaning that must not be left out unasked."""
     if not label:
         raise InvalidInput(f"{path}: line {line}: column {place + 1} has no heading; name it, or delete the column")
+    if _NO_HEADING.fullmatch(label):
+        raise InvalidInput(
+            f"{path}: line {line}: has no headings: write them above the numbers, or state each column by"
+            f" sonolube mapping, such as --column '{label}=normal_load N'"
+        )
     if stake := meaning_at_stake(label):
+        likely = likely_statements(label) or [LEFT_OUT]
+        choices = " or ".join(f"'{label}={each}'" for each in likely)
         raise InvalidInput(
             f"{path}: line {line}: column {_quoted(label)} must name a quantity, such as sliding_speed [mm/s]: it looks"
-            f" like {stake}; map it (sonolube mapping), or delete the column"
+            f" like {stake}; map it (sonolube mapping FILE --column {choices}), or delete the column"
         )
 
 
-def _in_si(
-    path: Path, line: int, column: _Column, rows: Sequence[NumberedCells], sign: str, missing: frozenset[str]
-) -> Floats:
-    """Numbers of a column in SI, NaN where a cell is empty."""
-    if column.name == DIRECTION_COLUMN and any(_word(cells, column) for _, cells in rows):
-        return _angles(path, line, column, rows, sign, missing)
-    source = column.source
-    unit = quantities()[column.name].unit
-    found = run_heading(source.column)
-    of_heading = found.unit if found else _bracketed(source.column)
-    stated = of_heading if source.unit is None else source.unit
-    if unit and not stated:
-        raise InvalidInput(
-            f"{path}: line {line}: {column.shown} has no unit; expected {unit_description(unit)}: put it into the"
-            f" heading, such as {_example(column.name, unit)}"
+@dataclass(frozen=True, slots=True)
+class _Read:
+    """Numbers of a column in SI, NaN where a cell is empty, with their uncertainties by digits and as stated."""
+
+    values: Floats
+    digits: Floats
+    uncertainties: Floats
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Cells:
+    """Reading of the cells of one table: its file, the line of its headings, decimal sign and texts for no value."""
+
+    path: Path
+    line: int
+    sign: str
+    missing: frozenset[str]
+    place: str
+
+    def in_si(self, column: _Column, rows: Sequence[NumberedCells]) -> _Read:
+        """Numbers of a column in SI."""
+        if column.name == DIRECTION_COLUMN and any(_word(cells, column) for _, cells in rows):
+            return self._angles(column, rows)
+        source = column.source
+        unit = quantities()[column.name].unit
+        found = run_heading(source.column)
+        of_heading = found.unit if found else _bracketed(source.column)
+        numbers = [self._number(*row, column) for row in rows]
+        values, digits, errors = (
+            np.array([getattr(number, name) for number in numbers]) for name in ("value", "digit", "uncertainty")
         )
-    gain, offset, _ = si_conversion(stated, unit=unit, name=f"{path}: line {line}: {column.shown}")
-    numbers = np.array([_number(path, *row, column, sign, missing) for row in rows])
-    readings = source.calibrated(numbers, stated=of_heading, name=f"{path}: line {line}: {column.shown}")
-    return offset + gain * readings
+        written = np.array([number.unit for number in numbers])
+        for each in dict.fromkeys(written.tolist()):
+            here = written == each
+            if not each and np.isnan(values[here]).all() and np.any(~here):
+                continue
+            stated = each or (of_heading if source.unit is None else source.unit)
+            line = self.line if not each else rows[int(np.argmax(here))][0]
+            name = f"{self.path}: {self.place if each else 'line'} {line}: {column.shown}"
+            if unit and not stated:
+                raise InvalidInput(
+                    f"{name} has no unit; expected {unit_description(unit)}: put it into the heading, such as"
+                    f" {_example(column.name, unit)}"
+                )
+            gain, offset, _ = si_conversion(stated, unit=unit, name=name)
+            values[here] = offset + gain * source.calibrated(values[here], stated=each or of_heading, name=name)
+            slope = abs(gain * source.gain)
+            digits[here], errors[here] = slope * OF_A_DIGIT * digits[here], slope * errors[here]
+        return _Read(values, digits, errors)
 
+    def _angles(self, column: _Column, rows: Sequence[NumberedCells]) -> _Read:
+        """Angles of a column that has words too, in rad: those of its words, NaN for one along the normal."""
+        words = [_word(cells, column) for _, cells in rows]
+        others = [(number, cells) for (number, cells), word in zip(rows, words, strict=True) if not word]
+        angles = np.array([DIRECTION_WORDS.get(word, np.nan) for word in words])
+        if any(_cell(cells, column.place) not in ("", *self.missing) for _, cells in others):
+            angles[[not word for word in words]] = self.in_si(column, others).values
+        unknown = np.full(angles.size, np.nan)
+        return _Read(angles, unknown, unknown)
 
-def _angles(
-    path: Path, line: int, column: _Column, rows: Sequence[NumberedCells], sign: str, missing: frozenset[str]
-) -> Floats:
-    """Angles of a column that has words too, in rad: those of its words, NaN for one along the normal or torsional."""
-    words = [_word(cells, column) for _, cells in rows]
-    others = [(number, cells) for (number, cells), word in zip(rows, words, strict=True) if not word]
-    angles = np.array([DIRECTION_WORDS.get(word, np.nan) for word in words])
-    if any(_cell(cells, column.place) not in ("", *missing) for _, cells in others):
-        angles[[not word for word in words]] = _in_si(path, line, column, others, sign, missing)
-    return angles
+    def _number(self, line: int, row: Sequence[str], column: _Column) -> CellNumber:
+        """Number in a cell of a row, in the unit of its column; NaN where it is empty."""
+        cell = _cell(row, column.place)
+        if not cell or cell in self.missing:
+            return _NO_NUMBER
+        number = cell_number(cell, sign=self.sign)
+        shown = f"{self.path}: {self.place} {line}: {column.shown} {_quoted(cell)}"
+        if number is None:
+            raise InvalidInput(f"{shown} is no number{_sign_hint(cell, self.sign)}")
+        if not abs(number.value) <= _LARGEST:
+            raise InvalidInput(f"{shown} lies beyond any run")
+        return number
 
 
 def _word(cells: Sequence[str], column: _Column) -> str:
@@ -298,33 +418,14 @@ def _example(name: str, unit: str) -> str:
         return f"{name} [{unit}]"
 
 
-def _number(path: Path, line: int, cells: Sequence[str], column: _Column, sign: str, missing: frozenset[str]) -> float:
-    """Number in a cell of a row, in the unit of its column; NaN where it is empty."""
-    cell = _cell(cells, column.place)
-    if not cell or cell in missing:
-        return float("nan")
-    number = parse_number(cell, decimal_sign=sign)
-    if number is None:
-        number = _with_thousands(cell, sign)
-    if number is None:
-        raise InvalidInput(f"{path}: line {line}: {column.shown} {_quoted(cell)} is no number{_sign_hint(cell, sign)}")
-    if not abs(number) <= _LARGEST:
-        raise InvalidInput(f"{path}: line {line}: {column.shown} {_quoted(cell)} lies beyond any run")
-    return number
-
-
-def _with_thousands(cell: str, sign: str) -> float | None:
-    """Number whose thousands are separated by the mark that is not its decimal sign; None where it has none."""
-    other = {".": ",", ",": "."}[sign]
-    if re.fullmatch(rf"[-+]?\d{{1,3}}(?:\{other}\d{{3}})+(?:\{sign}\d+)?", cell) is None:
-        return None
-    return parse_number(cell.replace(other, ""), decimal_sign=sign)
-
-
 def _sign_hint(cell: str, sign: str) -> str:
     """Other reading of a cell: a number of the other decimal sign."""
     other = {".": ",", ",": "."}[sign]
-    return f" with the decimal sign {sign!r}; give text.decimal_sign in a mapping" if other in cell else ""
+    return (
+        f" with the decimal sign {sign!r}; give the other by sonolube mapping FILE --decimal-sign"
+        if other in cell
+        else ""
+    )
 
 
 def left_out_caveat(labels: Sequence[str]) -> tuple[str, ...]:

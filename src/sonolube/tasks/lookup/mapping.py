@@ -1,18 +1,33 @@
 """Task `mapping`: quantity and unit of each column of a text file, as a file for `--mapping`."""
 
 from collections.abc import Mapping, Sequence
+from math import isfinite
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.recordings.mapping import mapping_toml
+from sonolube.measurement.measured_runs import read_runs, run_caveats, runs_text
+from sonolube.measurement.recordings.mapping import RecordingMapping, mapping_toml
 from sonolube.measurement.recordings.text_tables import TextTable
-from sonolube.measurement.run_headings import LEFT_OUT, Meaning, RunHeading, mapping_of_columns, samples, stated_columns
-from sonolube.measurement.run_table import run_text
+from sonolube.measurement.run_headings import (
+    LEFT_OUT,
+    Meaning,
+    RunHeading,
+    likely_statements,
+    mapping_of_columns,
+    samples,
+    stated_columns,
+)
+from sonolube.measurement.run_table import run_table, run_text
 from sonolube.tasks.answer import Answer, Block, Table, answer
 from sonolube.tasks.files import InputFile, file_path
-from sonolube.tasks.parameters import File, KeyValues, file_stem
+from sonolube.tasks.parameters import File, KeyValues, Parameter, file_stem
 from sonolube.tasks.task import shown, task
+from sonolube.text.units import format_si
+from sonolube.vocabulary import quantities
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _COLUMN = KeyValues(
     "Quantity and unit of a column, such as 'Kraft=friction_force N', or - to leave it out; may come again.",
@@ -25,6 +40,9 @@ def mapping(
     file: Annotated[InputFile, File("Table of runs, or text export of an instrument.", "FILE")],
     *,
     column: Annotated[Mapping[str, str] | None, _COLUMN] = None,
+    decimal_sign: Annotated[
+        Literal[".", ","] | None, Parameter("Decimal sign, where each may as well stand between thousands.")
+    ] = None,
 ) -> "MappingAnswer":
     """Quantity and unit of each column of a table, by headings and answers to questions, as a file for --mapping.
 
@@ -38,17 +56,37 @@ def mapping(
     {'quantity': 'sliding_speed', 'unit': 'mm/s'}
     """
     path = file_path(file)
-    table, _ = run_text(path)
+    table, caveats = run_text(path)
     columns = {}
     for label, found in stated_columns(table, column or {}, path).items():
         if found is None:
+            likely = likely_statements(label) or ["friction_force N"]
             raise InvalidInput(
                 f"{path}: line {table.line}: column {label!r} needs a quantity and its unit; state it by"
-                f" {shown('column')}, such as '{label}=friction_force N', or '{label}={LEFT_OUT}' to leave it out"
+                f" {shown('column')}, such as {' or '.join(repr(f'{label}={each}') for each in likely)}, or"
+                f" '{label}={LEFT_OUT}' to leave it out"
             )
         columns[label] = found
     _require_distinct(columns, path)
-    return MappingAnswer(table=table, columns=columns, name=f"{file_stem(file)}-mapping.toml")
+    known = mapping_of_columns(table, columns, decimal_sign=decimal_sign or "")
+    runs, refusal = (None, "") if known.axis is not None else _runs(path, known)
+    return MappingAnswer(
+        table=table,
+        columns=columns,
+        known=known,
+        runs=runs,
+        told=(*(run_caveats(runs) if runs is not None else caveats), *([refusal] if refusal else [])),
+        name=f"{file_stem(file)}-mapping.toml",
+    )
+
+
+def _runs(path: Path, known: RecordingMapping) -> "tuple[xr.Dataset | None, str]":
+    """Runs of a table by its mapping; or why there is none, where its cells can be read."""
+    run_table(path, mapping=known)
+    try:
+        return read_runs(path, mapping=known), ""
+    except InvalidInput as failure:
+        return None, f"no table of runs: {str(failure).removeprefix(f'{path}: ')}"
 
 
 def _require_distinct(columns: Mapping[str, Meaning], path: Path) -> None:
@@ -62,36 +100,64 @@ def _require_distinct(columns: Mapping[str, Meaning], path: Path) -> None:
             )
 
 
+_MAX_SHOWN = 3  # first values of a column
+
+
 @answer
 class MappingAnswer(Answer):
-    """Quantity and unit of each column, and the file of the mapping."""
+    """Quantity and unit of each column, the runs that follow, and the file of the mapping."""
 
     table: TextTable
     columns: Mapping[str, Meaning]
+    known: RecordingMapping
+    runs: "xr.Dataset | None"
+    told: Sequence[str]
     name: str
 
     def blocks(self) -> Sequence[Block]:
-        """Columns with quantity, unit and first cells."""
+        """Columns with quantity, unit, first cells and the values that are read; the friction of the first runs."""
         rows = []
         for label, found in self.columns.items():
-            named = (found.name, found.unit) if isinstance(found, RunHeading) else ("left out", "")
-            rows.append((label, *named, "; ".join(samples(self.table, label))))
+            named = (found.name, found.unit) if isinstance(found, RunHeading) else (_words(found), "")
+            rows.append((label, *named, "; ".join(samples(self.table, label)), self._values(found)))
         count = f"{len(self.columns)} columns, {len(self.table.rows)} rows"
-        return [count, Table(("column", "quantity", "unit", "cells"), rows)]
+        found_runs = [] if self.runs is None else [runs_text(self.runs)]
+        return [count, Table(("column", "quantity", "unit", "cells", "read as"), rows), *found_runs]
+
+    def _values(self, found: Meaning) -> str:
+        """First values of a column of runs in SI."""
+        if self.runs is None or not isinstance(found, RunHeading) or found.name not in self.runs:
+            return ""
+        values = self.runs[found.name].to_numpy()[:_MAX_SHOWN]
+        if values.dtype.kind != "f":
+            return "; ".join(map(str, values))
+        unit = quantities()[found.name].unit
+        return "; ".join(format_si(float(each), unit, digits=4) if isfinite(each) else "-" for each in values)
 
     def object(self) -> dict[str, Any]:
-        """Quantity and unit by column; null where it is left out."""
+        """Quantity and unit by column, null where it is left out; number of runs and their friction ratios."""
+        ratios = [] if self.runs is None else (1 - self.runs["friction_reduction"].to_numpy()).tolist()
         return {
             "columns": {
                 label: {"quantity": found.name, "unit": found.unit} if isinstance(found, RunHeading) else None
                 for label, found in self.columns.items()
-            }
+            },
+            "friction_ratios": ratios,
         }
+
+    def caveats(self) -> Sequence[str]:
+        """What was assumed and left out, and why there are no runs."""
+        return self.told
 
     def files(self) -> Mapping[str, str]:
         """Mapping as TOML."""
-        return {self.name: mapping_toml(mapping_of_columns(self.table, self.columns))}
+        return {self.name: mapping_toml(self.known)}
 
     def keeps(self, name: str, present: str) -> bool:
         """Whether a mapping of this name was changed since it was written."""
         return present != self.files().get(name)
+
+
+def _words(found: str) -> str:
+    """Meaning of a column that is no quantity, in words."""
+    return "left out" if found == LEFT_OUT else found
