@@ -14,6 +14,7 @@ from sonolube.measurement.measured_runs import (
     direction_words,
     read_runs,
     run_caveats,
+    runs_text,
     setting,
     with_columns,
 )
@@ -112,6 +113,34 @@ def test_uncertain_forces_and_wear_rates_give_those_of_their_ratios(tmp_path: Pa
     runs = read_runs(table(tmp_path, f"{head}\n1,2,0.06,0.16,1,4\n"))
     assert float(runs["friction_reduction_uncertainty"][0]) == approx(np.hypot(0.03, 0.04))
     assert float(runs["wear_rate_ratio"][0]) == approx(0.25)
+
+
+def test_coefficients_and_the_zero_of_a_force_give_the_uncertainty_of_their_ratio(tmp_path: Path) -> None:
+    # r = 0.5 of 0.4: sqrt(0.01^2 + (0.5 * 0.02)^2) / 0.4
+    head = (
+        "friction_coefficient,intrinsic_friction_coefficient,friction_coefficient_uncertainty,"
+        "intrinsic_friction_coefficient_uncertainty"
+    )
+    by_coefficient = read_runs(table(tmp_path, f"{head}\n0.2,0.4,0.01,0.02\n"))
+    assert float(by_coefficient["friction_reduction_uncertainty"][0]) == approx(np.sqrt(2e-4) / 0.4)
+    # a zero that is off by u moves the ratio 0.25 of 2 N by (1 - 0.25) u / 2 N
+    by_zero = "friction_force [N],intrinsic_friction_force [N],force_zero_uncertainty [N]\n0.5,2,0.04\n"
+    runs = read_runs(table(tmp_path, by_zero))
+    assert float(runs["friction_reduction_uncertainty"][0]) == approx(0.75 * 0.04 / 2)
+
+
+def test_rows_without_vibration_serve_their_run_before_those_of_their_speed(tmp_path: Path) -> None:
+    rows = "1,off,2.0\n1,on,1.0\n2,off,4.0\n2,on,1.0\n3,on,1.5\n"
+    runs = read_runs(table(tmp_path, f"Run,Ultrasound,Friction force [N]\n{rows}"))
+    assert 1 - runs["friction_reduction"].to_numpy() == approx([0.5, 0.25, 0.5])  # the third by the mean, 3 N
+
+
+def test_what_a_table_was_read_as_is_one_line(tmp_path: Path) -> None:
+    text = "Load [N],Speed [mm/s],Amplitude [um],COF on,COF off\n5,20,1,0.3,0.4\n5,20,2,0.2,0.4\n"
+    assert runs_text(read_runs(table(tmp_path, text))) == (
+        "runs.csv: 2 runs with vibration amplitude, sliding speed 20 mm/s, normal load 5 N; friction ratio 0.5 to 0.75"
+        " by friction coefficient with and without vibration"
+    )
 
 
 def test_equal_rows_count_and_are_said_unless_their_names_differ(tmp_path: Path) -> None:

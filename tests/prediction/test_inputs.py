@@ -209,6 +209,41 @@ def test_the_uncertainty_of_runs_is_stated_or_by_four_repeats_or_a_twentieth() -
         of(runs(friction_reduction=[0.5, 0.4], friction_reduction_uncertainty=[0.03, 0.0]))
 
 
+def test_the_uncertainty_of_runs_is_at_least_that_of_their_digits() -> None:
+    digits = [0.01, 0.03, 0.01, 0.03]
+    stated = of(
+        runs(
+            friction_reduction=[0.5] * 4,
+            friction_reduction_uncertainty=[0.02] * 4,
+            friction_reduction_resolution=digits,
+        )
+    )
+    assert stated.tested.uncertainty == approx([0.02, 0.03, 0.02, 0.03])
+    equal = of(runs(friction_reduction=[0.5] * 4, friction_reduction_resolution=digits))
+    assert equal.tested.uncertainty == approx(digits)
+    assert any("less than the last digit that is written; 0.03 by the digits" in each for each in equal.caveats)
+    unknown = of(runs(friction_reduction=[0.5] * 4))
+    assert unknown.tested.uncertainty == approx([0.05] * 4)
+    assert any("hold repeats that are equal in every digit; 0.05 is taken" in each for each in unknown.caveats)
+
+
+def test_coefficients_without_vibration_and_the_uncertainty_of_the_load_give_the_dry_friction() -> None:
+    coefficient = of(runs(friction_reduction=[0.5], intrinsic_friction_coefficient=[0.42])).friction
+    assert (coefficient.value, coefficient.spread) == approx((0.42, 0.05))
+    assert coefficient.reason == "coefficients of the runs without vibration"
+    # a load of 4 N within 0.4 N is 10 % of the coefficient, which more runs do not lessen; alone 2 %
+    force = of(
+        runs(
+            friction_reduction=[0.5, 0.5],
+            intrinsic_friction_force=[1.2, 1.2],
+            normal_load=[4.0, 4.0],
+            normal_load_uncertainty=[0.4, 0.4],
+            sliding_speed=[0.01, 0.02],
+        )
+    ).friction
+    assert (force.value, force.spread) == approx((0.3, sqrt(0.02**2 + 0.1**2)))
+
+
 @mark.parametrize(("stated", "is_said"), [(0.021, False), (0.019, True)])
 def test_a_median_uncertainty_below_a_fiftieth_is_that_within_one_test(stated: float, is_said: bool) -> None:
     found = of(

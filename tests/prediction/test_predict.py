@@ -199,9 +199,9 @@ def test_own_runs_narrow_the_interval_the_more_the_more_there_are(tmp_path: Path
 def test_runs_by_voltage_and_forces_are_those_by_amplitude_and_ratio(tmp_path: Path) -> None:
     amplitude = friction_point(rig()).vibration_amplitude
     head = "voltage_peak_to_peak [V],friction_force [mN],intrinsic_friction_force [N]"
-    by_force = predict(rig(), runs=read_runs(runs_file(tmp_path, "14,600,1", head=head)))
+    by_force = predict(rig(), runs=read_runs(runs_file(tmp_path, "14,600.00,1.00000", head=head)))
     head = "vibration_amplitude [m],friction_reduction [%]"
-    by_ratio = predict(rig(), runs=read_runs(runs_file(tmp_path, f"{amplitude / 2!r},40", head=head)))
+    by_ratio = predict(rig(), runs=read_runs(runs_file(tmp_path, f"{amplitude / 2!r},40.000", head=head)))
     assert by_force["friction_ratio"].to_numpy() == approx(by_ratio["friction_ratio"].to_numpy(), abs=1e-9)
 
 
@@ -225,12 +225,22 @@ def test_the_scatter_of_repeats_is_taken_for_the_uncertainty_of_each_run(tmp_pat
     assert found["measured_uncertainty"].to_numpy() == approx(np.std([0.40, 0.44, 0.36, 0.42, 0.38], ddof=1))
 
 
+def test_equal_repeats_are_uncertain_by_the_last_digit_that_is_written(tmp_path: Path) -> None:
+    # half of 0.01 N over sqrt(3) in each force: hypot(1, 0.52 / 1.12) * 0.0028868 / 1.12 = 0.0028417
+    head = "voltage_peak_to_peak [V],sliding_speed [mm/s],friction_force [N],intrinsic_friction_force [N]"
+    found = predict(rig(), runs=read_runs(runs_file(tmp_path, *["28,30,0.52,1.12"] * 6, head=head)))
+    assert found["measured_uncertainty"].to_numpy() == approx([0.0028417] * 6, rel=1e-4)
+    assert "0.0028 by the digits is taken" in found.attrs["caveats"]
+    fine = predict(rig(), runs=read_runs(runs_file(tmp_path, *["28,30,0.520000000,1.120000000"] * 6, head=head)))
+    assert np.isfinite(width(fine))
+
+
 @mark.parametrize(("stated", "is_said"), [(0.0008, True), (0.05, False)])
 def test_standard_errors_within_a_test_are_said_to_leave_out_how_tests_differ(
     stated: float, is_said: bool, tmp_path: Path
 ) -> None:
     head = f"{COLUMNS},friction_reduction_uncertainty"
-    rows = [f"{amplitude},20.3,{ratio},{stated}" for amplitude, ratio in ((1.2, 0.85), (2.5, 0.7))]
+    rows = [f"{amplitude},20.3,{ratio},{stated}" for amplitude, ratio in ((1.2, "0.8500"), (2.5, "0.7000"))]
     found = predict(rig(), runs=read_runs(runs_file(tmp_path, *rows, head=head)))
     assert (f"an uncertainty of {stated:g} of their ratios, as of one test" in found.attrs["caveats"]) is is_said
     assert (width(found) < 0.05) is is_said  # less than the printed scatter of one rig's own tests

@@ -66,6 +66,23 @@ def test_settings_within_a_hundredth_are_one_condition_of_the_first_run() -> Non
     assert [one.uncertainty for one in found.conditions] == approx([scatter / sqrt(3), scatter, scatter])
 
 
+def test_the_mean_of_repeats_is_no_better_known_than_its_digits() -> None:
+    settings: dict[str, Any] = {
+        "friction_reduction": [0.5, 0.5, 0.5, 0.3],
+        "vibration_amplitude": [1e-6, 1e-6, 1e-6, 2e-6],
+    }
+    found = table(**settings, friction_reduction_resolution=[0.003, 0.003, 0.003, 0.004])
+    assert [one.uncertainty for one in found.conditions] == approx([0.003, 0.004])
+    assert table(**settings).conditions[0].uncertainty is None
+
+
+def test_a_coefficient_without_vibration_is_that_of_its_condition() -> None:
+    found = table(
+        tribometer(), friction_reduction=[0.5], vibration_amplitude=[1e-6], intrinsic_friction_coefficient=[0.42]
+    )
+    assert found.conditions[0].friction_coefficient == approx(0.42)
+
+
 def test_without_repeats_the_stated_uncertainty_of_each_run_is_that_of_its_condition() -> None:
     found = table(
         friction_reduction=[0.5, 0.4], vibration_amplitude=[1e-6, 2e-6], friction_reduction_uncertainty=[0.03, np.nan]

@@ -9,7 +9,15 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, Integers
 from sonolube.errors import InvalidInput
-from sonolube.measurement.measured_runs import checked_ratios, copies_caveat, direction_words, run_caveats, setting
+from sonolube.measurement.measured_runs import (
+    checked_ratios,
+    copies_caveat,
+    direction_words,
+    intrinsic_coefficients,
+    resolution,
+    run_caveats,
+    setting,
+)
 from sonolube.prediction.evidence import REFERENCE_DECAY_LENGTH, Conditions, TestedRig, UncertainConditions
 from sonolube.prediction.posterior import Posterior, learned
 from sonolube.prediction.within_plane import NO_LENGTH_ERROR, is_predicted, within_plane
@@ -290,7 +298,8 @@ _MAX_RUNS: Final = 200
 _USUAL_UNCERTAINTY: Final = 0.05  # of a friction ratio, where neither column nor repeats state it
 _WITHIN_ONE_TEST: Final = 0.02  # below which a stated one is a standard error within a test; printed scatter is 0.047
 _MIN_REPEATS: Final = 4  # from which the scatter of repeats is taken
-_LEAST_SCATTER: Final = 0.005  # of repeats, below which their digits tell, not the rig
+_NO_SCATTER: Final = 1e-9  # of repeats, that of the arithmetic
+_FINEST: Final = 1e-5  # uncertainty of a ratio below which covariances of repeats lose their rank; no rig is that fine
 _SAME_ANGLE: Final = 0.02  # rad
 
 
@@ -332,6 +341,7 @@ def own_runs(runs: "xr.Dataset", inputs: RigInputs, *, title: str) -> OwnRuns:
             raise InvalidInput(f"{title}: {name} of run {int(np.argmin(values > 0)) + 1} must be positive")
     at = inputs.at(vibration_amplitude=amplitude, sliding_speed=speed)
     uncertainty, caveats = _uncertainty(runs, ratio, amplitude, speed)
+    uncertainty = np.maximum(uncertainty, _FINEST)
     caveats = (*run_caveats(runs), *copies, *caveats)
     loads = setting(runs, "normal_load", inputs.normal_load)
     if np.any(np.abs(loads / inputs.normal_load - 1) > 0.5):
@@ -366,40 +376,61 @@ def _amplitudes(runs: "xr.Dataset", inputs: RigInputs) -> Floats:
 
 
 def _uncertainty(runs: "xr.Dataset", ratio: Floats, amplitude: Floats, speed: Floats) -> tuple[Floats, tuple[str, ...]]:
-    """Standard uncertainty of each ratio: as stated, by the scatter of repeats, or the usual one."""
-    stated = setting(runs, "friction_reduction_uncertainty", np.nan)
+    """Standard uncertainty of each ratio: as stated, by the scatter of repeats, or the usual one.
+
+    None is below that of the digits as they are written.
+    """
+    stated, digits = setting(runs, "friction_reduction_uncertainty", np.nan), resolution(runs)
     if np.any(stated <= 0):
         raise InvalidInput("friction_reduction_uncertainty must be positive in every run")
     if np.all(np.isfinite(stated)):
-        return stated, () if np.median(stated) >= _WITHIN_ONE_TEST else (
-            f"the runs state an uncertainty of {np.median(stated):.2g} of their ratios, as of one test: others on the"
-            f" same rig differ by about {_USUAL_UNCERTAINTY:g}, and the interval is too narrow for them",
-        )
+        found = np.maximum(stated, digits)
+        return found, () if np.median(found) >= _WITHIN_ONE_TEST else (_too_narrow("state", found),)
     keys = np.round(np.log(np.stack([amplitude, speed])), 2)
     _, group, counts = np.unique(keys, axis=1, return_inverse=True, return_counts=True)
     scatter = pooled_scatter(ratio, group.ravel())
-    if scatter is not None and ratio.size - counts.size + 1 >= _MIN_REPEATS:
-        alike = f"the repeats scatter by less than {_LEAST_SCATTER:g} of their ratio, which is taken for each"
-        caveat = () if scatter >= _LEAST_SCATTER else (alike,)
-        return np.where(np.isnan(stated), max(scatter, _LEAST_SCATTER), stated), caveat
-    return np.where(np.isnan(stated), _USUAL_UNCERTAINTY, stated), (
-        f"the runs state no uncertainty and hold too few repeats; {_USUAL_UNCERTAINTY:g} is taken for each ratio",
+    has_repeats = scatter is not None and ratio.size - counts.size + 1 >= _MIN_REPEATS
+    if scatter is not None and has_repeats and np.all(np.maximum(scatter, digits) > _NO_SCATTER):
+        found = np.where(np.isnan(stated), np.maximum(scatter, digits), np.maximum(stated, digits))
+        told = [_too_narrow("scatter by", found)] if np.median(found) < _WITHIN_ONE_TEST else []
+        if np.any(digits > scatter):
+            told.append(
+                f"the repeats scatter by less than the last digit that is written; {np.max(digits):.2g} by the digits"
+                " is taken for their ratios"
+            )
+        return found, tuple(told)
+    reason = "hold repeats that are equal in every digit" if has_repeats else "hold too few repeats"
+    return np.where(np.isnan(stated), np.maximum(_USUAL_UNCERTAINTY, digits), np.maximum(stated, digits)), (
+        f"the runs state no uncertainty and {reason}; {_USUAL_UNCERTAINTY:g} is taken for each ratio",
+    )
+
+
+def _too_narrow(verb: str, uncertainty: Floats) -> str:
+    """Caveat on an uncertainty that is one within a test."""
+    of = "an uncertainty of " if verb == "state" else ""
+    return (
+        f"the runs {verb} {of}{np.median(uncertainty):.2g} of their ratios, as of one test: others on the same rig"
+        f" differ by about {_USUAL_UNCERTAINTY:g}, and the interval is too narrow for them"
     )
 
 
 def _intrinsic(runs: "xr.Dataset", loads: Floats) -> Input | None:
-    """Intrinsic coefficient of friction by the runs' own forces without vibration."""
-    forces = setting(runs, "intrinsic_friction_force", np.nan)
-    if np.all(np.isnan(forces)):
+    """Intrinsic coefficient of friction by the runs' own forces over loads, or coefficients, without vibration."""
+    coefficients = intrinsic_coefficients(runs, loads)
+    if np.all(np.isnan(coefficients)):
         return None
-    logs = np.log((forces / loads)[np.isfinite(forces)])
+    logs = np.log(coefficients[np.isfinite(coefficients)])
     spread = float(np.std(logs, ddof=1) / np.sqrt(logs.size)) if logs.size > 1 else _USUAL_UNCERTAINTY
+    of_load = setting(runs, "normal_load_uncertainty", 0.0) / loads
+    by_force = np.isfinite(setting(runs, "intrinsic_friction_force", np.nan))
+    shared = float(np.mean(of_load[by_force])) if by_force.any() else 0.0
+    named = "forces" if by_force.any() else "coefficients"
     return Input(
         name="friction_coefficient",
         label="dry friction",
         value=float(np.exp(np.mean(logs))),
-        spread=max(spread, 0.02),
-        reason="forces of the runs without vibration",
+        spread=float(np.hypot(max(spread, 0.02), shared)),
+        reason=f"{named} of the runs without vibration",
         remedy="more runs without vibration",
     )
 

@@ -9,7 +9,15 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.measured_runs import checked_ratios, copies_caveat, direction_words, run_caveats, setting
+from sonolube.measurement.measured_runs import (
+    checked_ratios,
+    copies_caveat,
+    direction_words,
+    intrinsic_coefficients,
+    resolution,
+    run_caveats,
+    setting,
+)
 from sonolube.models.contact import RoughContact
 from sonolube.rig import Rig, steady_vibration
 from sonolube.rig.vibration_direction import NORMAL, require_same_direction
@@ -138,7 +146,7 @@ def run_conditions(runs: "xr.Dataset", rig: Rig | None = None) -> RunsTable:
             raise InvalidInput(f"{title}: {name} of run {int(np.argmax(inputs[name] <= 0)) + 1} must be positive")
     group, first = _groups(inputs)
     stated = setting(runs, "friction_reduction_uncertainty", np.nan)
-    scatter = pooled_scatter(ratio, group)
+    scatter, digits = pooled_scatter(ratio, group), resolution(runs)
     conditions = []
     for index, run in enumerate(first):
         members = group == index
@@ -148,7 +156,7 @@ def run_conditions(runs: "xr.Dataset", rig: Rig | None = None) -> RunsTable:
                 | {"friction_coefficient": float(np.mean(inputs["friction_coefficient"][members]))},
                 rig,
                 friction_ratio=float(np.mean(ratio[members])),
-                uncertainty=_uncertainty(stated[members], scatter),
+                uncertainty=_uncertainty(stated[members], scatter, float(np.max(digits[members]))),
                 repeats=int(members.sum()),
             )
         )
@@ -166,7 +174,7 @@ def _inputs(runs: "xr.Dataset", rig: Rig | None) -> dict[str, Floats]:
     speed = np.nan if rig is None or not rig.sliding_speed > 0 else rig.sliding_speed
     frequency = np.nan if rig is None or rig.drive is None else rig.drive.frequency
     load = setting(runs, "normal_load", np.nan if rig is None else rig.normal_load)
-    dry = setting(runs, "intrinsic_friction_force", np.nan) / load
+    dry = intrinsic_coefficients(runs, load)
     angle = None if rig is None else rig.direction.angle
     words = direction_words(runs)
     require_same_direction(words, NORMAL if rig is None else rig.direction, title="runs" if rig is None else rig.title)
@@ -238,11 +246,18 @@ def pooled_scatter(ratio: Floats, group: np.ndarray) -> float | None:
     return float(np.sqrt(np.sum((ratio - means[group]) ** 2) / free))
 
 
-def _uncertainty(stated: Floats, scatter: float | None) -> float | None:
-    """Standard uncertainty of the mean of repeats: by their scatter, else as stated."""
+def _uncertainty(stated: Floats, scatter: float | None, digits: float) -> float | None:
+    """Standard uncertainty of the mean of repeats: by their scatter, else as stated; at least that of the digits.
+
+    Equal digits are rounded alike, so that a mean of repeats is no better known by them. None where nothing tells it.
+    """
     if scatter is not None:
-        return scatter / float(np.sqrt(stated.size))
-    return float(np.sqrt(np.sum(stated**2))) / stated.size if np.all(np.isfinite(stated)) else None
+        found = scatter / float(np.sqrt(stated.size))
+    elif np.all(np.isfinite(stated)):
+        found = float(np.sqrt(np.sum(stated**2))) / stated.size
+    else:
+        return None
+    return max(found, digits) or None
 
 
 def _condition(

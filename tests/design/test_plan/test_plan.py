@@ -120,6 +120,11 @@ def test_scatter_of_runs_is_that_about_the_means_of_equal_conditions() -> None:
     assert known is not None
     assert known.intrinsic == approx(np.sqrt(2 * (0.1 / 1.1) ** 2 / 3))
     assert known.vibrated == approx(np.sqrt(2 * 0.1**2 / 3))
+    coarse = scatter_of_runs(runs.assign(friction_reduction_resolution=("run", [0.3] * 5)))
+    assert coarse is not None
+    assert (coarse.intrinsic, coarse.vibrated, coarse.reduction) == approx((0.3, 0.3, 0.3))
+    assert "scatter by less than the last digit that is written" in coarse.caveat
+    assert scatter_of_runs(xr.Dataset({"friction_reduction": ("run", [0.5] * 6)})) is None  # nothing tells it
     other_speed = runs.assign(sliding_speed=("run", [0.1, 0.12, 0.2, 0.1, 0.2]))
     assert scatter_of_runs(other_speed) is None  # two degrees of freedom
 

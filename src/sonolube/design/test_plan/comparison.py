@@ -16,12 +16,14 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats, Integers, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.facts.published import column_numbers
+from sonolube.measurement.measured_runs import resolution
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _TABLE: Final = "2.3"
 _FEWEST: Final = 3  # degrees of freedom from which repeats give the scatter
+_NO_SCATTER: Final = 1e-9  # of repeats, that of the arithmetic
 _SMALLEST: Final = 1e-30  # of any condition, in SI
 _CONDITIONS: Final = ("normal_load", "sliding_speed", "voltage_peak_to_peak", "vibration_amplitude")
 
@@ -76,9 +78,9 @@ def assumed_scatter(value: float) -> Scatter:
 
 
 def scatter_of_runs(runs: "xr.Dataset") -> Scatter | None:
-    """Scatter of own runs about the means of their conditions.
+    """Scatter of own runs about the means of their conditions, at least that of the digits as they are written.
 
-    None where fewer than four repeats do not give it.
+    None where fewer than four repeats do not give it, or they are equal and no digits are known.
     """
     present = [name for name in _CONDITIONS if name in runs]
     reduction = runs["friction_reduction"].to_numpy()
@@ -96,11 +98,18 @@ def scatter_of_runs(runs: "xr.Dataset") -> Scatter | None:
         mean = _means(without, group)
         if np.all(np.isfinite(vibrated + mean)):
             forces = _within(without / mean, group, free), _within(vibrated / mean, group, free)
+    digits = float(np.sqrt(np.mean(resolution(runs) ** 2)))
+    if not max(both, digits) > _NO_SCATTER:
+        return None
     return Scatter(
-        intrinsic=forces[0],
-        vibrated=forces[1],
-        reduction=both,
+        intrinsic=max(forces[0], digits),
+        vibrated=max(forces[1], digits),
+        reduction=max(both, digits),
         source=f"repeats of the own runs, {free} degrees of freedom",
+        caveat=""
+        if both >= digits
+        else "the own repeats scatter by less than the last digit that is written: that of"
+        " the digits is taken, and other specimens usually scatter by more",
     )
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Unpack
 
+from sonolube.measurement.measured_runs import runs_text
 from sonolube.measurement.run_columns import runs_help
 from sonolube.report import Drawing
 from sonolube.report.results import model_comparison as results
@@ -160,7 +161,8 @@ def fit(
     with stage("fitting") as advance:
         result = fit_runs(table, known, models=comparison.compared_models(model), advance=advance)
     volts = None if known is None or "voltage_peak_to_peak" not in table else results.volts_per_amplitude(known)
-    return FitAnswer(fit=result, rig=known, volts_per_amplitude=volts, name=f"{file_stem(runs)}-fit")
+    name, read_as = f"{file_stem(runs)}-fit", runs_text(table)
+    return FitAnswer(fit=result, rig=known, volts_per_amplitude=volts, name=name, read_as=read_as)
 
 
 @answer
@@ -171,12 +173,14 @@ class FitAnswer(Answer):
     rig: Rig | None
     volts_per_amplitude: float | None
     name: str
+    read_as: str = ""
 
     def blocks(self) -> Sequence[Block]:
         """Errors and parameters of each model, the verdict, models that do not apply, and what to measure."""
         table = self.fit.table
         scatter = "" if table.scatter is None else f", repeats scatter by {table.scatter:.3f}"
         return [
+            *([self.read_as] if self.read_as else []),
             f"{table.title}: {table.runs} runs under {len(table.conditions)} conditions{scatter}; errors of the ratio",
             Table(("model", "k", "unseen", "fit", "AICc", ""), results.error_rows(self.fit)),
             *results.parameter_lines(self.fit),

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, TypeAlias, Unpack
 
+from sonolube.measurement.measured_runs import runs_text
 from sonolube.measurement.run_columns import runs_help
 from sonolube.prediction.figures import prediction_chart
 from sonolube.prediction.live_prediction import LivePrediction
@@ -69,10 +70,10 @@ def predict(
     >>> round(float(answer["friction_ratio"].median()), 1)
     0.3
     """
-    known = rig_of(rig)
+    known, own = rig_of(rig), runs_of(runs, mapping)
     result = LivePrediction(
         known,
-        runs=runs_of(runs, mapping),
+        runs=own,
         laboratory_runs=_rigs_with_runs(laboratory),
         evidence=evidence_of(evidence),
         pin=pin,
@@ -82,7 +83,8 @@ def predict(
         seed=seed,
     ).first
     measured = measured_on(known, vibration_amplitude=result.attrs["vibration_amplitude"])
-    return PredictionAnswer(rig=known, prediction=result, measured=measured)
+    read_as = "" if own is None else runs_text(own)
+    return PredictionAnswer(rig=known, prediction=result, measured=measured, read_as=read_as)
 
 
 def _rigs_with_runs(laboratory: Laboratory) -> "list[tuple[Rig, Dataset]]":
@@ -98,6 +100,7 @@ class PredictionAnswer(Answer):
     rig: Rig
     prediction: LabelledArrays
     measured: Sequence[FrictionTest]
+    read_as: str = ""
 
     def blocks(self) -> Sequence[Block]:
         """Statement in words, a table of quantities with their intervals, and the inputs."""
@@ -108,6 +111,7 @@ class PredictionAnswer(Answer):
             about.append(f"  friction ratio by {attributes['friction_model']} alone: {ratio:.3g}")
         return [
             f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}",
+            *([self.read_as] if self.read_as else []),
             f"This point is {self._verdict().words}.",
             *attributes["statement"].split("\n"),
             Table(results.HEADS, results.quantity_rows(self.prediction)),
