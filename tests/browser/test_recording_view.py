@@ -15,7 +15,7 @@ from tests.tiers import examples
 
 import sonolube as sl
 from sonolube.browser.answers import answer_object
-from sonolube.browser.measured_use import measured_table, measured_use
+from sonolube.browser.measured_use import measured_table, measured_use, own_runs
 from sonolube.browser.recording_view import file_view, recording_view
 from sonolube.browser.requests import Places
 from sonolube.browser.uploads import Uploads
@@ -216,6 +216,42 @@ def test_rows_are_appended_to_a_table_of_runs(staircase: dict[str, Any], places:
     assert (found["runs"], runs.sizes["run"]) == (6, 6)
     alone = measured_use({"table": own}, places)
     assert (alone["added"], alone["entries"]) == (4, [])
+
+
+def test_what_is_added_twice_is_added_once(staircase: dict[str, Any], places: Places) -> None:
+    first = measured_use({"results": staircase["results"]}, places)
+    own = given_file(places, "own.csv", first["csv"].encode())
+    again = measured_use({"results": staircase["results"], "runs": own}, places)
+    assert (again["added"], again["runs"], again["csv"]) == (0, 2, first["csv"])
+
+
+def test_the_table_of_own_runs_is_changed_row_by_row(places: Places) -> None:
+    pasted = own_runs({"text": "Amplitude [um]\tmu\tmu0\n2,5\t0,2\t0,4\n1,0\t0,3\t0,4\n"}, places)
+    assert (pasted["added"], pasted["runs"], pasted["used"]) == (2, 2, [True, True])
+    own = given_file(places, "own.csv", pasted["csv"].encode())
+    more = own_runs({"runs": own, "text": "4,0\t0,1\t0,4"}, places)
+    assert more["rows"][2][: len(more["names"]) - 1] == ("4.0", "0.1", "0.4")
+    edited = own_runs({"runs": own, "edit": {"row": 0, "name": "vibration_amplitude", "text": "2 um"}}, places)
+    assert edited["rows"][0][0] == "2"
+    off = own_runs({"runs": own, "switch": {"row": 1, "used": False}}, places)
+    assert (off["used"], off["switched_off"]) == ([True, False], 1)
+    assert own_runs({"runs": own, "remove": 0}, places)["rows"] == pasted["rows"][1:]
+    assert own_runs({}, places) == {**own_runs({}, places), "rows": (), "csv": "", "runs": 0}
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"remove": "first"}, "row: give a whole number, got 'first'"),
+        ({"switch": {"used": True}}, "row: give a whole number"),
+        ({"edit": {"row": 3, "name": "note", "text": "a"}}, "row must be one of the 2"),
+        ({"text": "only words"}, "pasted.txt"),
+    ],
+)
+def test_a_change_of_own_runs_that_makes_no_sense_is_refused(change: dict[str, Any], said: str, places: Places) -> None:
+    own = given_file(places, "own.csv", b"friction_ratio\n0.5\n0.6\n")
+    with raises(InvalidInput, match=said):
+        own_runs({"runs": own, **change}, places)
 
 
 def test_a_table_of_unknown_headings_becomes_runs_by_its_mapping(places: Places, tmp_path: Path) -> None:

@@ -65,9 +65,9 @@ def test_a_rig_takes_measured_quantities_with_their_units_and_the_coefficient() 
     entries = result_rig_entries(result, {"normal_load": 3.0, "frequency": 22000.0})
     assert entries == {
         "contact.normal_load": "3 N",
-        "drive.frequency": "2.2e+04 Hz",
-        "vibration.vibration_amplitude": "2.5e-06 m",
-        "actuator.amplitude_per_volt": "8.92e-08 m/V",
+        "drive.frequency": "22 kHz",
+        "vibration.vibration_amplitude": "2.5 um",
+        "actuator.amplitude_per_volt": "89.2 nm/V",
         "friction.friction_coefficient": "0.2",
     }
 

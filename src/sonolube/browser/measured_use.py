@@ -1,8 +1,9 @@
-"""Requests for where measured numbers go: entries of a rig, rows of a table of own runs, a table of all numbers."""
+"""Requests for where measured numbers go: entries of a rig, the table of own runs, a table of all numbers."""
 
 import csv
 import io
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any, Final
 
 from sonolube import __version__
@@ -10,7 +11,16 @@ from sonolube.browser.requests import Places
 from sonolube.browser.uploads import named_uploads, uploaded
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import RecordingMapping, read_mapping
-from sonolube.measurement.run_rows import rows_of_table, run_rows_csv
+from sonolube.measurement.run_columns import RUN_COLUMNS, SOURCE, SWITCH
+from sonolube.measurement.run_sheet import (
+    RunSheet,
+    joined,
+    read_sheet,
+    sheet_of_rows,
+    with_cell,
+    with_switch,
+    without_row,
+)
 from sonolube.report.measured.further_use import result_numbers, result_rig_entries, result_run_rows
 from sonolube.tasks.files import NamedBytes, file_path
 from sonolube.text.units import to_si
@@ -40,18 +50,76 @@ def measured_use(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
     results = payload.get("results") or []
     if not isinstance(results, list) or len(results) > _MAX_RESULTS or not all(isinstance(e, Mapping) for e in results):
         raise InvalidInput("results: give those of an answer in JSON", key="results")
-    rows = [row for result in results for row in result_run_rows(result, conditions)]
+    sheet = sheet_of_rows([row for result in results for row in result_run_rows(result, conditions)])
     with named_uploads():
         if payload.get("table"):
-            rows = rows_of_table(_path(payload["table"], places), mapping=_mapping(payload.get("mapping")))
-        before = rows_of_table(_path(payload["runs"], places)) if payload.get("runs") else []
+            name, path = _file(payload["table"], places)
+            sheet = read_sheet(path, mapping=_mapping(payload.get("mapping")), source=name)
+        before = read_sheet(_file(payload["runs"], places)[1]) if payload.get("runs") else RunSheet()
     entries = {key: entry for result in results for key, entry in result_rig_entries(result, conditions).items()}
+    every, added = joined(before, sheet)
+    return {"entries": [{"key": key, "text": text} for key, text in entries.items()]} | _sheet_object(every, added)
+
+
+def own_runs(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
+    """Table of own runs after a change: cells by row and column, the rows that are used, and the table as text.
+
+    A request has `runs` (an upload, or nothing for an empty table) and one change at most: `text` (rows of a
+    spreadsheet to add), `edit` (`row` from 0, `name`, `text`; a row behind the last one is added), `switch` (`row`,
+    `used`) or `remove` (a row).
+    """
+    with named_uploads():
+        sheet = read_sheet(_file(payload["runs"], places)[1]) if payload.get("runs") else RunSheet()
+        added = 0
+        if payload.get("text"):
+            sheet, added = joined(sheet, _pasted(str(payload["text"]), sheet))
+    if isinstance(edit := payload.get("edit"), Mapping):
+        cell = {"row": _row(edit), "name": str(edit.get("name")), "text": str(edit.get("text", ""))}
+        sheet = with_cell(sheet, **cell)
+    if isinstance(switch := payload.get("switch"), Mapping):
+        sheet = with_switch(sheet, row=_row(switch), is_used=bool(switch.get("used")))
+    if payload.get("remove") is not None:
+        sheet = without_row(sheet, row=_row({"row": payload["remove"]}))
+    return _sheet_object(sheet, added)
+
+
+def _sheet_object(sheet: RunSheet, added: int) -> dict[str, Any]:
+    """Table of own runs as a page shows it, with the number of rows that were added."""
+    used = [sheet.is_used(row) for row in range(len(sheet.rows))]
     return {
-        "entries": [{"key": key, "text": text} for key, text in entries.items()],
-        "csv": run_rows_csv([*before, *rows]) if before or rows else "",
-        "added": len(rows),
-        "runs": len(before) + len(rows),
+        "csv": sheet.csv(),
+        "added": added,
+        "runs": len(sheet.rows),
+        "used": used,
+        "switched_off": used.count(False),
+        "names": sheet.names,
+        "headings": sheet.headings,
+        "rows": sheet.rows,
+        "choices": [(column.name, column.heading) for column in RUN_COLUMNS if column.name != SWITCH],
     }
+
+
+def _row(change: Mapping[str, Any]) -> int:
+    """Number of a row of a change."""
+    row = change.get("row")
+    if not isinstance(row, int) or isinstance(row, bool):
+        raise InvalidInput(f"row: give a whole number, got {str(row)[:40]!r}", key="row")
+    return row
+
+
+def _pasted(text: str, sheet: RunSheet) -> RunSheet:
+    """Rows of a spreadsheet as text, with headings or under those of the table."""
+    path = file_path(NamedBytes("pasted.txt", text.encode()))
+    try:
+        return read_sheet(path, source="pasted")
+    except InvalidInput:
+        width = len(text.splitlines()[0].split("\t"))
+        names = [name for name in sheet.names if name not in (SOURCE, SWITCH)]
+        if width != len(names):
+            raise
+    headings = [heading for heading, name in zip(sheet.headings, sheet.names, strict=True) if name in names]
+    path = file_path(NamedBytes("pasted.txt", "\n".join(["\t".join(headings), text]).encode()))
+    return read_sheet(path, source="pasted")
 
 
 def measured_table(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
@@ -85,10 +153,10 @@ def _quantity(name: str, text: Any) -> float:
         raise InvalidInput(str(failure), key=name) from None
 
 
-def _path(file: Any, places: Places) -> Any:
-    """Path of an upload under its own name."""
+def _file(file: Any, places: Places) -> tuple[str, Path]:
+    """Name of an upload, and its path under this name."""
     name, path = uploaded(file, places)
-    return file_path(NamedBytes(name, path.read_bytes()))
+    return name, file_path(NamedBytes(name, path.read_bytes()))
 
 
 def _mapping(text: Any) -> RecordingMapping | None:

@@ -39,6 +39,7 @@ VIEWS: Final = {
     "file": "sonolube.browser.recording_view:file_view",
     "measured-table": "sonolube.browser.measured_use:measured_table",
     "measured-use": "sonolube.browser.measured_use:measured_use",
+    "own-runs": "sonolube.browser.measured_use:own_runs",
     "recording": "sonolube.browser.recording_view:recording_view",
     "scan": "sonolube.browser.scan_view:scan_view",
     "section": "sonolube.browser.scan_view:section_view",

@@ -5,6 +5,7 @@ rig are filled in, and copies are reported.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -15,8 +16,14 @@ from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import RecordingMapping, read_mapping
 from sonolube.measurement.recordings.raw_table import si_conversion
-from sonolube.measurement.run_columns import DIRECTION_COLUMN, FRICTION_COLUMNS, TEXT_NAMES, heading
-from sonolube.measurement.run_table import RunTable, assigned_columns, left_out_caveat, run_table
+from sonolube.measurement.run_columns import (
+    DIRECTION_COLUMN,
+    FRICTION_COLUMNS,
+    SWITCH,
+    SWITCHED_OFF,
+    TEXT_NAMES,
+    heading,
+)
 from sonolube.text.units import format_si
 from sonolube.vocabulary import quantities
 
@@ -130,6 +137,7 @@ def _runs(table: RunTable, path: Path) -> "xr.Dataset":
     """Measured runs of the columns of a table."""
     import xarray as xr
 
+    table = _switched_on(table, path)
     columns, digits = dict(table.columns), dict(table.digits)
     count = len(table.lines)
     without = np.zeros(count, bool)
@@ -153,6 +161,26 @@ def _runs(table: RunTable, path: Path) -> "xr.Dataset":
     data |= {name: ("run", np.array(cells)[known]) for name, cells in table.texts.items()}
     caveats = [*table.caveats, *([_skipped(empty, table.lines)] if empty.any() else [])]
     return xr.Dataset(data, attrs={"title": f"{path.name}, in %", "caveats": "\n".join(caveats)})
+
+
+def _switched_on(table: RunTable, path: Path) -> RunTable:
+    """Table without the runs that its column `used` switches off, and a caveat on them."""
+    used = np.array([cell.strip().casefold() not in SWITCHED_OFF for cell in table.texts.get(SWITCH, ())], bool)
+    if used.all():
+        return table
+    if not used.any():
+        raise InvalidInput(f"{path}: every run is switched off by the column {SWITCH!r}")
+    off = [line for line, is_used in zip(table.lines, used, strict=True) if not is_used]
+    named = ", ".join(map(str, off[:_MAX_LINES])) + (", ..." if len(off) > _MAX_LINES else "")
+    return replace(
+        table,
+        columns={name: values[used] for name, values in table.columns.items()},
+        digits={name: values[used] for name, values in table.digits.items()},
+        texts={name: [cells[at] for at in np.flatnonzero(used)] for name, cells in table.texts.items()},
+        lines=[table.lines[at] for at in np.flatnonzero(used)],
+        without=None if table.without is None else table.without[used],
+        caveats=(*table.caveats, f"switched off by the column {SWITCH!r} and left out: line {named}"),
+    )
 
 
 _USED = ("sliding_speed", "normal_load", *_VIBRATIONS, "frequency", "vibration_direction")

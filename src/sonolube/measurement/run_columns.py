@@ -45,6 +45,15 @@ class RunColumn:
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
 
+SOURCE: Final = "source"
+"""Column of the document or file that a run is from."""
+
+SWITCH: Final = "used"
+"""Column that leaves a run out of predictions and fits without removing it."""
+
+SWITCHED_OFF: Final = ("no", "nein", "off", "false", "0")
+"""Cells of it, in small letters, that leave a run out; any other, and none, uses it."""
+
 DIRECTION_COLUMN: Final = "vibration_direction"
 """Column whose cells are angles or words."""
 

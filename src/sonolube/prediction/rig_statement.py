@@ -122,6 +122,7 @@ def prediction_attributes(
         "vibration_amplitude": inputs.amplitude.value,
         "sliding_speed": inputs.sliding_speed,
         "runs": 0 if own is None else own.tested.friction_ratio.size,
+        "disagreeing_runs": "" if found.check is None else " ".join(str(place + 1) for place in found.check.outliers),
     }
     if evidence is not None:
         attributes["evidence"] = evidence.name

@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
-from sonolube.vocabulary import quantities
+from sonolube.text.units import format_quantity
 
 _LEVELS: Final = ("steady_friction_force", "friction_force", "mean_force")
 _KEYS: Final = {
@@ -92,7 +92,7 @@ def result_rig_entries(result: Mapping[str, Any], conditions: Mapping[str, float
         value = _value(result, name)
         if value is not None and value > 0:
             found[name] = value
-    entries = {_KEYS[name]: f"{value:.4g} {quantities()[name].unit}" for name, value in found.items() if name in _KEYS}
+    entries = {_KEYS[name]: format_quantity(value, name, digits=4) for name, value in found.items() if name in _KEYS}
     coefficient = _coefficient(result, conditions)
     return entries if coefficient is None else entries | {_COEFFICIENT: f"{coefficient:.4g}"}
 

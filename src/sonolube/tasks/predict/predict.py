@@ -138,6 +138,7 @@ class PredictionAnswer(Answer):
             "measured": [measured_object(one) for one in self.measured],
             "interval_share_left": dict(zip(results.column(found, "input"), shares, strict=True)),
             "runs": found.attrs.get("runs"),
+            "disagreeing_runs": [int(number) for number in found.attrs["disagreeing_runs"].split()],
             **results.power_object(found),
             "evidence": results.evidence_object(found),
             "operating_point": results.operating_texts(found),

@@ -347,7 +347,7 @@ export function MaterialChoices({view, faultOf, isAsked = true}) {
 export const RunsChoice = ({view, onFile}) => html`<p class="row">
   <${FileButton}
     id="own-runs"
-    accept=".csv,.txt"
+    accept=".csv,.tsv,.txt,.xlsx,.ods"
     label="Own runs"
     onFile=${onFile}
     test="runs-file"

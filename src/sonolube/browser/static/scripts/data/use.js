@@ -4,8 +4,8 @@ import {ask, useReply} from '../api.js';
 import {NOTHING, uploadOf} from '../fields.js';
 import {Button, Card, Refusal} from '../parts.js';
 import {useRig} from '../rig-panel.js';
+import {counted, RunsTable, takeSheet} from '../runs-table.js';
 import {addressOf, change, useApp} from '../state.js';
-import {save} from '../take-away.js';
 
 /**
  * @param {{source: object|null}} props `source` is what a request of "measured-use" has beside the runs: results and
@@ -31,18 +31,10 @@ export function Use({source}) {
   const runs = view.runs && uploadOf(view.runs);
   const add = async () => {
     const made = await ask('api/measured-use', {body: {...source, ...(runs && {runs})}});
-    const kept = made.content?.csv ? await ask('api/uploads', {raw: new Blob([made.content.csv])}) : made;
-    if (kept.content?.upload) change({view: {runs: `${kept.content.upload} own-runs.csv`}});
-    setNote(
-      kept.failure?.text ??
-        (made.content.csv
-          ? `${made.content.added} added: ${made.content.runs} own runs.`
-          : 'There is no level of friction to add.'),
-    );
-  };
-  const take = async () => {
-    const made = await ask('api/measured-use', {body: {runs}});
-    if (made.content) save({name: 'own-runs.csv', kind: 'text/csv', text: made.content.csv});
+    const refused = made.failure?.text ?? (made.content.runs ? await takeSheet(made.content) : '');
+    const {added, runs: count} = made.content ?? {};
+    const known = count ? 'In the table already: ' : 'There is no level of friction to add.';
+    setNote(refused || `${added ? `${added} added: ` : known}${count ? counted(made.content) : ''}`);
   };
   return html`<${Card} id="use-title" title="Use the result" data-test="use">
     ${failure?.faults.map(({text}) => html`<${Refusal} key=${text} text=${text} role="alert" />`)}
@@ -53,7 +45,6 @@ export function Use({source}) {
       ${
         runs &&
         html`
-          <${Button} onClick=${take} data-test="take-runs">Save own runs (CSV)<//>
           <a class="button" href=${addressOf('predict', {runs: view.runs})} data-test="predict-with-runs">
             Predict with own runs
           </a>
@@ -61,5 +52,6 @@ export function Use({source}) {
       }
     </p>
     <p class="hint" role="status" data-test="use-note">${note}</p>
+    ${runs && html`<${RunsTable} view=${view} />`}
   <//>`;
 }

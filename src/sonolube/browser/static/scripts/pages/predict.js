@@ -6,6 +6,7 @@ import {Chart} from '../chart.js';
 import {focusField, MaterialChoices, RunsChoice, typed, uploadOf, useFile} from '../fields.js';
 import {Button, capital, Card, classes, Refusal} from '../parts.js';
 import {useRig, Workspace} from '../rig-panel.js';
+import {RunsTable} from '../runs-table.js';
 import {addressOf, change, decode, encode, present, setEntry, useApp} from '../state.js';
 import {offer} from '../take-away.js';
 
@@ -138,9 +139,9 @@ function Sharpen({answer, beside}) {
 
 /**
  * Files of own runs: dropped anywhere on the page, or chosen.
- * @param {{view: Texts, onFile: (file: File) => void, note: string}} props
+ * @param {{view: Texts, onFile: (file: File) => void, note: string, disagreeing?: number[]}} props
  */
-function OwnRuns({view, onFile, note}) {
+function OwnRuns({view, onFile, note, disagreeing}) {
   const [help, setHelp] = useState('');
   const read = async () => {
     const {content, failure} = await ask('api/description');
@@ -149,8 +150,9 @@ function OwnRuns({view, onFile, note}) {
   };
   return html`<${Card} id="runs-title" title="Own runs" data-test="own-runs">
     <${RunsChoice} view=${view} onFile=${onFile} />
-    <p class="hint">Or drop a CSV file on this page.</p>
+    <p class="hint">Or drop a file of runs on this page.</p>
     <${Refusal} text=${note} role="alert" />
+    <${RunsTable} view=${view} disagreeing=${disagreeing} />
     <details onToggle=${read}>
       <summary>What the file holds</summary>
       <p class="hint">${help || 'Reading…'}</p>
@@ -291,7 +293,12 @@ export default function Predict() {
   const faultOf = (key) => failure?.faults.find((fault) => fault.key === key)?.text;
   const shown = [...Object.keys(state.rig.changes), 'pin', 'disc', 'lubricant'];
   const extra = html`<${Materials} view=${state.view} faultOf=${faultOf} isFirst=${!content && !failure} />`;
-  const ownRuns = html`<${OwnRuns} view=${state.view} onFile=${onFile} note=${note} />`;
+  const ownRuns = html`<${OwnRuns}
+    view=${state.view}
+    onFile=${onFile}
+    note=${note}
+    disagreeing=${content?.answer.disagreeing_runs}
+  />`;
   const isDim = useLate(isWaiting || Boolean(failure));
   if (!content) {
     return html`<${Workspace}
@@ -338,9 +345,10 @@ export default function Predict() {
           />`
         }
       </section>
+      ${ownRuns}
       <${Kept} kept=${kept} now=${content} onRemove=${remove} />
       <div class="columns">
-        <div class="stack"><${Sharpen} answer=${content} beside=${{pin, disc, runs}} />${ownRuns}</div>
+        <div class="stack"><${Sharpen} answer=${content} beside=${{pin, disc, runs}} /></div>
         <div class="stack">
           <${Card} id="more-title" title="In words">
             ${[rest, ...others].filter(Boolean).map((line) => html`<p key=${line}>${line}</p>`)}

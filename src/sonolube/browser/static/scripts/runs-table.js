@@ -1,0 +1,181 @@
+/** Table of own runs: rows that are typed, pasted, switched off and removed; each change is a new table of the view. */
+import {html, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
+import {ask, useReply} from './api.js';
+import {NOTHING, uploadOf} from './fields.js';
+import {Button, Refusal, Select} from './parts.js';
+import {change} from './state.js';
+import {save} from './take-away.js';
+/** @import {Texts} from './state.js' */
+
+/**
+ * @typedef {{csv: string, added: number, runs: number, used: boolean[], switched_off: number, names: string[], headings:
+ *   string[], rows: string[][], choices: [string, string][]}} Sheet table of own runs; choices are columns that it may
+ *   have, with their headings
+ */
+
+const MOST = 200; // rows that are shown
+const SWITCH = 'used';
+const EMPTY = 'Type a run, or paste rows of a spreadsheet.';
+/** Columns that are shown first. */
+const FIRST = [
+  'vibration_amplitude',
+  'voltage_peak_to_peak',
+  'sliding_speed',
+  'friction_force',
+  'intrinsic_friction_force',
+];
+const FEWEST = 3; // columns of a table that needs no others
+
+/** Number of runs in words. @param {Sheet} sheet @returns {string} */
+export const counted = ({runs, switched_off}) =>
+  `${runs} own ${runs === 1 ? 'run' : 'runs'}${switched_off ? `, ${switched_off} of them switched off` : ''}.`;
+
+/** Heading of a column. @param {Sheet|undefined} sheet @param {string} name @returns {string} */
+const headingOf = (sheet, name) => sheet?.headings[sheet.names.indexOf(name)] ?? name;
+
+/**
+ * Make a table the one of the view; one without a row leaves it out.
+ * @param {Sheet} sheet
+ * @param {(text: string|null) => void} [onTaken] called with the entry of the view before it changes
+ * @returns {Promise<string>} why it was not taken
+ */
+export async function takeSheet(sheet, onTaken) {
+  const kept = sheet.csv ? await ask('api/uploads', {raw: new Blob([sheet.csv])}) : null;
+  if (kept?.failure) return kept.failure.text;
+  const runs = kept && `${kept.content.upload} own-runs.csv`;
+  onTaken?.(runs);
+  change({view: {runs}});
+  return '';
+}
+
+/**
+ * @param {{view: Texts, disagreeing?: number[]}} props numbers of the runs, from 1 and among those that are used, which
+ *   disagree with the others
+ */
+export function RunsTable({view, disagreeing = []}) {
+  const [note, setNote] = useState('');
+  const [further, setFurther] = useState(/** @type {string[]} */ ([]));
+  const runs = view.runs && uploadOf(view.runs);
+  const {content, failure} = useReply('own-runs', 'api/own-runs', runs ? {runs} : NOTHING);
+  const latest = useRef(/** @type {string|null|undefined} */ (view.runs));
+  latest.current = view.runs;
+  const turn = useRef(Promise.resolve());
+  /** Change the table as it is after all changes before. @param {object} action */
+  const act = (action) => {
+    turn.current = turn.current.then(async () => {
+      const before = latest.current && uploadOf(latest.current);
+      const reply = await ask('api/own-runs', {body: {...(before && {runs: before}), ...action}});
+      const refused = reply.failure?.text ?? (await takeSheet(reply.content, (text) => (latest.current = text)));
+      const wasKnown = 'text' in action && !refused && !reply.content.added;
+      setNote(refused || (wasKnown ? 'These rows are in the table already.' : ''));
+    });
+  };
+  /** @type {Sheet|undefined} */
+  const sheet = content;
+  const own = sheet?.names.filter((name) => name !== SWITCH) ?? [];
+  const names = [...new Set([...own, ...(own.length < FEWEST ? FIRST : []), ...further])];
+  const headings = new Map([
+    ...(sheet?.choices ?? []),
+    ...own.map((name) => /** @type {[string, string]} */ ([name, headingOf(sheet, name)])),
+  ]);
+  const columns = names.map((name) => [name, headings.get(name) ?? name]);
+  const numbers = sheet?.used.map((isUsed, row) => (isUsed ? sheet.used.slice(0, row + 1).filter(Boolean).length : 0));
+  const count = Math.min(sheet?.rows.length ?? 0, MOST);
+  /** @param {number} row */
+  const rowOf = (row) => html`<tr key=${row} class=${sheet?.used[row] === false ? 'is-off' : undefined}>
+    <th scope="row">${row + 1}</th>
+    <td>
+      ${
+        row < count &&
+        html`<input
+          type="checkbox"
+          checked=${sheet?.used[row]}
+          aria-label=${`Use run ${row + 1}`}
+          data-test="use-run"
+          onChange=${(event) => act({switch: {row, used: event.target.checked}})}
+        />`
+      }
+    </td>
+    ${columns.map(
+      ([name, heading]) => html`<td key=${name}>
+        <input
+          type="text"
+          class="cell"
+          value=${sheet?.rows[row]?.[sheet.names.indexOf(name)] ?? ''}
+          aria-label=${`${heading}, run ${row + 1}`}
+          data-test=${`cell:${row}:${name}`}
+          onChange=${(event) => act({edit: {row, name, text: event.target.value}})}
+        />
+      </td>`,
+    )}
+    <td>
+      ${disagreeing.includes(numbers?.[row] ?? -1) && html`<strong class="tag">disagrees with the others</strong>`}
+      ${
+        row < count &&
+        html`<${Button}
+          kind="small"
+          onClick=${() => act({remove: row})}
+          aria-label=${`Remove run ${row + 1}`}
+          data-test="remove-run"
+        >
+          remove
+        <//>`
+      }
+    </td>
+  </tr>`;
+  return html`
+    ${failure?.faults.map(({text}) => html`<${Refusal} key=${text} text=${text} role="alert" />`)}
+    ${
+      !failure &&
+      html`<div class="table-frame" tabindex="0" role="group" aria-label="Own runs">
+        <table class="table runs-table" data-test="runs-table">
+          <thead>
+            <tr>
+              <th scope="col">run</th>
+              <th scope="col">used</th>
+              ${columns.map(([name, heading]) => html`<th key=${name} scope="col">${heading}</th>`)}
+              <th scope="col"><span class="hidden">Changes</span></th>
+            </tr>
+          </thead>
+          <tbody>
+            ${[...Array(Math.min(count + 1, MOST)).keys()].map(rowOf)}
+          </tbody>
+        </table>
+      </div>`
+    }
+    <p class="hint" role="status" data-test="runs-note">
+      ${note || (sheet?.rows.length ? counted(sheet) + (sheet.runs > MOST ? ` The first ${MOST} are shown.` : '') : EMPTY)}
+    </p>
+    <p class="row">
+      <textarea
+        class="paste"
+        rows="1"
+        aria-label="Paste rows of a spreadsheet"
+        placeholder="Paste rows of a spreadsheet"
+        data-test="paste-runs"
+        onInput=${(event) => {
+          const text = event.target.value;
+          event.target.value = '';
+          if (text.trim()) act({text});
+        }}
+      ></textarea>
+      <${Select}
+        choices=${[['', 'Add a column…'], ...(sheet?.choices ?? []).filter(([name]) => !names.includes(name))]}
+        value=""
+        aria-label="Add a column"
+        data-test="add-column"
+        onChange=${(event) => setFurther([...further, event.target.value])}
+      />
+      ${
+        sheet?.rows.length
+          ? html`<${Button}
+              onClick=${() => save({name: 'own-runs.csv', kind: 'text/csv', text: sheet.csv})}
+              data-test="take-runs"
+            >
+              Save own runs (CSV)
+            <//>`
+          : null
+      }
+    </p>
+  `;
+}
