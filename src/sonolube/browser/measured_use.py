@@ -74,8 +74,7 @@ def own_runs(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
         if payload.get("text"):
             sheet, added = joined(sheet, _pasted(str(payload["text"]), sheet))
     if isinstance(edit := payload.get("edit"), Mapping):
-        cell = {"row": _row(edit), "name": str(edit.get("name")), "text": str(edit.get("text", ""))}
-        sheet = with_cell(sheet, **cell)
+        sheet = with_cell(sheet, row=_row(edit), name=str(edit.get("name")), text=str(edit.get("text", "")))
     if isinstance(switch := payload.get("switch"), Mapping):
         sheet = with_switch(sheet, row=_row(switch), is_used=bool(switch.get("used")))
     if payload.get("remove") is not None:

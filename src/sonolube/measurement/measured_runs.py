@@ -24,6 +24,7 @@ from sonolube.measurement.run_columns import (
     TEXT_NAMES,
     heading,
 )
+from sonolube.measurement.run_table import RunTable, assigned_columns, left_out_caveat, run_table
 from sonolube.text.units import format_si
 from sonolube.vocabulary import quantities
 

@@ -15,6 +15,7 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_files import read_head
 from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping, TextLayout
 from sonolube.measurement.recordings.raw_table import column_of_label, numbered_labels, si_conversion
+from sonolube.measurement.recordings.table_layout import is_summary
 from sonolube.measurement.recordings.text_recordings import DelimitedText
 from sonolube.measurement.recordings.text_tables import (
     NumberedCells,
@@ -38,14 +39,6 @@ from sonolube.measurement.spreadsheets import is_spreadsheet, spreadsheet_rows
 from sonolube.text.units import unit_description
 from sonolube.vocabulary import quantities
 
-_SUMMARIES: Final = frozenset(
-    {
-        *("mean", "mean value", "average", "avg", "median", "mittel", "mittelwert", "mw", "durchschnitt"),
-        *("sd", "s.d", "std", "std dev", "stdev", "standard deviation", "stabw", "stdabw", "standardabweichung"),
-        *("sem", "standard error", "cv", "variance", "varianz", "min", "minimum", "max", "maximum"),
-        *("sum", "summe", "total", "gesamt", "ø", "⌀", "x̄", "σ"),
-    }
-)
 _UNCERTAINTY_OF: Final = {"friction_ratio": "friction_reduction_uncertainty"}
 _NO_HEADING: Final = re.compile(r"column \d+")
 _NO_NUMBER: Final = CellNumber(float("nan"), float("nan"))
@@ -248,16 +241,11 @@ def _gain_caveat(column: _Column) -> str:
 
 def _runs_and_summaries(rows: Sequence[NumberedCells], place: str) -> tuple[Sequence[NumberedCells], tuple[str, ...]]:
     """Rows of runs, and a caveat on each row that summarises others."""
-    words = {number: next((cell for cell in cells if _is_summary(cell)), "") for number, cells in rows}
+    words = {number: next((cell for cell in cells if is_summary(cell)), "") for number, cells in rows}
     caveats = tuple(
         f"{place} {number} is no run and left out: {_quoted(word)}" for number, word in words.items() if word
     )
     return [(number, cells) for number, cells in rows if not words[number]], caveats
-
-
-def _is_summary(cell: str) -> bool:
-    """Whether a cell marks its row as a summary of others, such as a mean."""
-    return len(cell) <= _QUOTED and cell.strip(" .:*()[]=\t").casefold() in _SUMMARIES
 
 
 def _by_mapping(path: Path, labels: Sequence[str], mapping: RecordingMapping) -> list[_Column]:
