@@ -35,8 +35,11 @@ FORMATS = (Signed("one", b"ONE", (".one",)), Signed("two", b"TWO", (".two",)), S
         (b"???", "file.dat", "text"),
     ],
 )
-def test_the_signature_precedes_the_suffix_and_the_suffix_the_fallback(head: bytes, name: str, detected: str) -> None:
-    found = detect_format(FORMATS, head, Path(name))  # type: ignore[type-var]
+def test_the_signature_precedes_the_suffix_and_the_suffix_the_fallback(
+    head: bytes, name: str, detected: str, tmp_path: Path
+) -> None:
+    (tmp_path / name).write_bytes(head)
+    found = detect_format(FORMATS, head, tmp_path / name)  # type: ignore[type-var]
     assert found is not None
     assert found.name == detected
 

@@ -36,7 +36,7 @@ _SUMMARIES = frozenset(
         *("mean", "mean value", "average", "avg", "median", "mittel", "mittelwert", "mw", "durchschnitt"),
         *("sd", "s.d", "std", "std dev", "stdev", "standard deviation", "stabw", "stdabw", "standardabweichung"),
         *("sem", "standard error", "cv", "variance", "varianz", "min", "minimum", "max", "maximum"),
-        *("sum", "summe", "total", "gesamt"),
+        *("sum", "summe", "total", "gesamt", "ø", "⌀", "x̄", "σ"),
     }
 )
 _LONGEST_SUMMARY = 40  # characters of a cell that names one

@@ -49,6 +49,23 @@ export async function takeSheet(sheet, onTaken) {
 }
 
 /**
+ * Cell of a run; what is typed stays while the table is read anew, and where it is refused.
+ * @param {{text: string, onText: (text: string) => Promise<string>, [name: string]: any}} props `onText` returns why a
+ *   text was not taken; further ones go to the input
+ */
+function Cell({text, onText, ...rest}) {
+  const [draft, setDraft] = useState(/** @type {string|null} */ (null));
+  return html`<input
+    type="text"
+    class="cell"
+    value=${draft ?? text}
+    onInput=${(event) => setDraft(event.target.value)}
+    onChange=${async (event) => (await onText(event.target.value)) || setDraft(null)}
+    ...${rest}
+  />`;
+}
+
+/**
  * @param {{view: Texts, disagreeing?: number[]}} props numbers of the runs, from 1 and among those that are used, which
  *   disagree with the others
  */
@@ -59,8 +76,8 @@ export function RunsTable({view, disagreeing = []}) {
   const {content, failure} = useReply('own-runs', 'api/own-runs', runs ? {runs} : NOTHING);
   const latest = useRef(/** @type {string|null|undefined} */ (view.runs));
   latest.current = view.runs;
-  const turn = useRef(Promise.resolve());
-  /** Change the table as it is after all changes before. @param {object} action */
+  const turn = useRef(Promise.resolve(''));
+  /** Change the table as it is after all changes before; why that was refused. @param {object} action */
   const act = (action) => {
     turn.current = turn.current.then(async () => {
       const before = latest.current && uploadOf(latest.current);
@@ -68,7 +85,9 @@ export function RunsTable({view, disagreeing = []}) {
       const refused = reply.failure?.text ?? (await takeSheet(reply.content, (text) => (latest.current = text)));
       const wasKnown = 'text' in action && !refused && !reply.content.added;
       setNote(refused || (wasKnown ? 'These rows are in the table already.' : ''));
+      return refused;
     });
+    return turn.current;
   };
   /** @type {Sheet|undefined} */
   const sheet = content;
@@ -98,13 +117,11 @@ export function RunsTable({view, disagreeing = []}) {
     </td>
     ${columns.map(
       ([name, heading]) => html`<td key=${name}>
-        <input
-          type="text"
-          class="cell"
-          value=${sheet?.rows[row]?.[sheet.names.indexOf(name)] ?? ''}
+        <${Cell}
+          text=${sheet?.rows[row]?.[sheet.names.indexOf(name)] ?? ''}
           aria-label=${`${heading}, run ${row + 1}`}
           data-test=${`cell:${row}:${name}`}
-          onChange=${(event) => act({edit: {row, name, text: event.target.value}})}
+          onText=${(text) => act({edit: {row, name, text}})}
         />
       </td>`,
     )}
