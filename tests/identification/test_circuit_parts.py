@@ -150,3 +150,14 @@ def test_another_residual_takes_the_parts_as_they_were_found() -> None:
     assert found.circuit.loss_tangent == approx(0.012, rel=0.1)
     assert found.resonances.mechanical_quality_factor == approx([900.0], rel=0.05)
     assert found.residual == "linear-magnitude"
+
+
+def test_digits_of_a_computed_spectrum_are_nothing_that_the_circuit_lacks() -> None:
+    z = impedance(LOW, **IDEAL)  # type: ignore[arg-type]
+    magnitude, phase = np.round(np.abs(z), 2), np.round(np.degrees(np.angle(z)), 3)
+    written = np.asarray(magnitude * np.exp(1j * np.radians(phase)), dtype=np.complex128)
+    rounded = ImpedanceSpectrum(frequency=LOW, impedance=written)
+    found = fit_circuit(rounded, branches=1)
+    assert 0 < found.residual_rms < 2e-5
+    assert not any("does not describe" in caveat for caveat in found.caveats)
+    assert parts_of(found) == set()

@@ -224,7 +224,9 @@ def test_a_field_of_metres_has_a_caveat_on_its_sheet(plate: Path) -> None:
 
 @pytest.mark.skipif(not RB5100.is_file(), reason="RB5100.txt is not beside the project; see shared/data")
 def test_the_linear_residual_on_the_measured_transducer_gives_the_known_circuit() -> None:
-    found = values(impedance_sheet(RB5100, settings=ImpedanceSettings(residual="linear-magnitude", branches=1)))
+    found = values(
+        impedance_sheet(RB5100, settings=ImpedanceSettings(residual="linear-magnitude", branches=1, parts=()))
+    )
     assert found["parallel_capacitance"] == approx(1.574e-9, rel=0.01)
     assert found["series_frequency_1"] == approx(154_397, rel=0.001)
     assert found["parallel_frequency_1"] == approx(182_966, rel=0.001)

@@ -33,8 +33,15 @@ from sonolube.report.measured.sheet import (
         (Value("x", "X", 0.0123456, "N", uncertainty=0.5), "12.3 ± 500 mN"),
         (Value("x", "X", 12.3456789, "N", uncertainty=0.000123), "12.34568 ± 0.00012 N"),
         (Value("x", "X", 12.3456789123, "N", uncertainty=1e-12), "12.345679 ± 1e-12 N"),  # eight digits at most
-        (Value("x", "X", 2500.0, "N", interval=(2400.0, 2612.34)), "2.5 kN (2.4 to 2.612)"),
-        (Value("x", "X", 0.25, "", interval=(0.2, 0.3)), "0.25 (0.2 to 0.3)"),
+        (Value("x", "X", 2500.0, "N", interval=(2400.0, 2612.34)), "2.50 kN (2.40 to 2.62)"),
+        (Value("x", "X", 0.25, "", interval=(0.2, 0.3)), "0.25 (0.20 to 0.30)"),
+        (
+            Value("series_frequency", "f", 19999.982, "Hz", interval=(19999.966, 20000.013)),
+            "19.99998 kHz (19.99996 to 20.00002)",
+        ),
+        (Value("x", "X", np.radians(2.0), "rad", interval=(np.radians(1.5), np.radians(2.5))), "2.0 deg (1.5 to 2.5)"),
+        (Value("x", "X", np.radians(2.0), "rad", uncertainty=np.radians(0.3)), "2 ± 0.3 deg"),
+        (Value("x", "X", 0.0, "N", interval=(-0.02, 0.03)), "0.00 N (-0.02 to 0.03)"),
         (Value("x", "X", 0.25, "", uncertainty=0.01), "0.25 ± 0.01"),
         (Value("x", "X", 0.0, "N", uncertainty=0.01), "0 ± 0.01 N"),
         (Value("x", "X", float("nan"), "N", uncertainty=0.01), "not known"),

@@ -41,6 +41,7 @@ _LOWEST_QUALITY, _HIGHEST_QUALITY = 3.0, 1e7
 _ROUNDING = 1e-9  # current of a branch over the total, below which it is rounding
 _MAX_CANDIDATES = 3  # fitted for the next branch
 _CORRELATED = 3.0  # residuals over independent ones, from which on a warning is given
+_DIGITS = 1e-5  # residual below which no instrument measures: what is left is the rounding of written digits
 _POINTS_PER_BRANCH = 4
 _MOSTLY = 0.5  # of the points
 _LARGEST_LOGARITHM = 200.0  # of a parameter, so that products of three are within the range of floats
@@ -230,7 +231,9 @@ def fit_circuit(
         chosen = fit_log_parameters(measured.residuals, start)
         intervals |= _intervals(measured, chosen, confidence_level)
     circuit, correlation = measured.circuit(chosen.logarithms), measured.correlation(chosen)
-    if correlation > _CORRELATED:
+    rms = float(np.sqrt(chosen.sum_of_squares / points))
+    lacks_something = correlation > _CORRELATED and rms > _DIGITS
+    if lacks_something:
         others = _by_other_residuals(measured, chosen, confidence_level, has_phase=spectrum.has_phase)
         intervals = spanning_intervals(intervals, [intervals | other for other in others])
     fitted = circuit_admittance(circuit, frequency=spectrum.frequency)
@@ -240,13 +243,13 @@ def fit_circuit(
         resonances=circuit_resonances(circuit),
         intervals=intervals,
         residual=measured.residual,
-        residual_rms=float(np.sqrt(chosen.sum_of_squares / points)),
+        residual_rms=rms,
         information_criteria=tuple(each.information_criterion for each in fits),
         residual_correlation=correlation,
         confidence_level=confidence_level,
         caveats=(
             *of_spectrum,
-            *_caveats(chosen, len(circuit.branches), branches, correlation),
+            *_caveats(chosen, len(circuit.branches), branches, correlation if lacks_something else 1.0),
             *_coupling_caveats(circuit_resonances(circuit)),
         ),
     )

@@ -12,6 +12,7 @@ from sonolube.charts import Chart
 from sonolube.errors import InvalidInput
 from sonolube.report.blocks import Block, Rows, Table as TextTable
 from sonolube.report.page import Drawing
+from sonolube.text.intervals import interval_texts
 from sonolube.text.units import format_like, format_quantity, format_si
 from sonolube.vocabulary import quantities, unit_of
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 Cell = float | str | None
 Drawn = ParamSpec("Drawn")
 
+_EXACT = 15  # significant digits of a number whose unit is sought
 _SIZE = ("field", "length", "lateral unit", "setting class")  # origins
 
 
@@ -56,23 +58,24 @@ class Value:
         """Value with the precision that its uncertainty allows, and the uncertainty or interval."""
         if not math.isfinite(self.value):
             return "not known"
-        rounded = self._rounded()
-        number, _, unit = rounded.partition(" ")
-        scale = 10.0 ** round(math.log10(self.value / float(number))) if float(number) else 1.0
+        rounded = self._rounded(self._digits)
+        exact, _, unit = self._rounded(_EXACT).partition(" ")
+        scale = self.value / float(exact) if float(exact) else 1.0  # SI value of the unit
         if self.uncertainty is not None:
+            number = rounded.partition(" ")[0]
             rounded = f"{self.uncertainty / scale:.2g}"
             plain = f"{float(rounded):.0f}" if "e+" in rounded else rounded
             return f"{number} ± {plain} {unit}".rstrip()
         if self.interval is not None:
-            lower, upper = (end / scale for end in self.interval)
-            return f"{number} {unit}".rstrip() + f" ({lower:.4g} to {upper:.4g})"
+            number, lower, upper = interval_texts(*(each / scale for each in (self.value, *self.interval)))
+            return f"{number} {unit}".rstrip() + f" ({lower} to {upper})"
         return rounded
 
-    def _rounded(self) -> str:
+    def _rounded(self, digits: int) -> str:
         """Value with its digits; in the unit usual for it where it is a quantity of the vocabulary."""
         if unit_of(self.name) == self.unit:
-            return format_quantity(self.value, self.name, digits=self._digits)
-        return format_si(self.value, self.unit, digits=self._digits)
+            return format_quantity(self.value, self.name, digits=digits)
+        return format_si(self.value, self.unit, digits=digits)
 
     @property
     def _digits(self) -> int:

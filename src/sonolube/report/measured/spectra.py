@@ -314,7 +314,8 @@ def _stack(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings, initial: St
 _OF_RIG = ("free_capacitance", "free_stroke_per_volt", "stack_stiffness", "stack_damping")  # entries of a rig
 
 
-_LABELS = {  # of quantities of branches, with the definition that holds beside other branches
+_LABELS = {  # of quantities of circuits; of branches with the definition that holds beside other branches
+    "series_inductance": "Lead inductance",
     "coupling_factor": "Coupling factor by C/(C0 + C)",
     "parallel_frequency": "Parallel resonance of the whole circuit",
     "effective_coupling_factor": "Effective coupling of the whole circuit",
@@ -330,7 +331,7 @@ def _value(name: str, interval: ConfidenceInterval) -> sheet.Value:
     """Fitted parameter with its interval, that of a branch named by its number."""
     ends = (interval.lower, interval.upper)
     if name in quantities():
-        return sheet.quantity_value(name, interval.value, interval=ends)
+        return sheet.quantity_value(name, interval.value, label=_LABELS.get(name, ""), interval=ends)
     base, _, branch = name.rpartition("_")
     word = quantities()[base]
     label = f"{_LABELS.get(base, word.meaning)}, branch {branch}"
