@@ -69,6 +69,7 @@ LISTS: Mapping[str, tuple[set[str], set[str]]] = {
     ),
     "kinds of files": (keys("pages/data.js", "const KINDS = {"), {*get_args(FileKind)}),
     "residuals of an impedance fit": (heads("data/spectrum.js", "const RESIDUALS = ["), choices(impedance, "residual")),
+    "circuits of an impedance fit": (heads("data/spectrum.js", "const CIRCUITS = ["), choices(impedance, "circuit")),
     "heights of a scan": (heads("data/scan.js", "const HEIGHTS = ["), {*get_args(ShownHeights)}),
     "forms to take away": (heads("take-away.js", "const FORMS = ["), {*_FORMS}),
     "kinds of blocks of an answer": (

@@ -36,6 +36,21 @@ def test_a_text_is_known_by_its_headings(name: str, tmp_path: Path) -> None:
     assert file_kind(path) == kind
 
 
+@pytest.mark.parametrize("encoding", ["utf-8", "cp1252", "utf-16"])
+@pytest.mark.parametrize("rows", [10, 2000])
+def test_a_spectrum_is_one_in_every_encoding_and_of_every_length(encoding: str, rows: int, tmp_path: Path) -> None:
+    body = "".join(f"{20 + k / 1000:.3f};{60 + k / 7:.2f};{-900 + k}\n".replace(".", ",") for k in range(rows))
+    path = tmp_path / "gerät.csv"
+    path.write_bytes(f"Gerät A\n\nFrequenz in kHz;Realteil (Ohm);Imaginärteil (Ohm)\n{body}".encode(encoding))
+    assert file_kind(path) == "spectrum"
+
+
+@pytest.mark.parametrize("headings", ["w,z,t", "time,F (N),R (mm)", "frequency (Hz),velocity (mm/s),phase (deg)"])
+def test_other_columns_of_short_names_are_no_spectrum(headings: str, tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text(f"{headings}\n1,2,3\n2,3,4\n")
+    assert file_kind(tmp_path / "a.csv") == "recording"
+
+
 def test_arrays_are_scans_and_examples_are_runs(tmp_path: Path) -> None:
     np.save(tmp_path / "heights.npy", np.zeros((4, 4)))
     assert file_kind(tmp_path / "heights.npy") == "scan"

@@ -206,6 +206,30 @@ def test_an_impedance_gives_its_circuit_with_each_branch_by_its_number(tmp_path:
     assert [each.title for each in sheet.figures] == ["Impedance with the fitted circuit", "Admittance circle"]
 
 
+def test_a_lossy_capacitance_and_leads_have_their_values_and_labels(tmp_path: Path) -> None:
+    f = np.linspace(180e3, 270e3, 241)
+    s = 2j * np.pi * f
+    motional = 2e-10 / (1 - (f / 220e3) ** 2 + 1j * f / (220e3 * 150))
+    z = 1 / (s * (2e-9 * (1 - 0.03j) + motional)) + 4.0 + s * 9e-6
+    z = z * (1 + 0.003 * np.random.default_rng(6).standard_normal((2, f.size)).T @ np.array([1, 1j]))
+    rows = [f"{a / 1e3:.9g};{b.real:.9g};{b.imag:.9g}".replace(".", ",") for a, b in zip(f, z, strict=True)]
+    (tmp_path / "z.csv").write_bytes(
+        "\n".join(["Gerät", "Frequenz (kHz);Realteil (Ohm);Imaginärteil (Ohm)", *rows]).encode("cp1252")
+    )
+    sheet = impedance_sheet(tmp_path / "z.csv", settings=ImpedanceSettings(branches=1))
+    told = {each.name: each for each in sheet.values}
+    for name, value in (("loss_tangent", 0.03), ("series_inductance", 9e-6), ("series_resistance", 4.0)):
+        assert told[name].value == approx(value, rel=0.15)
+    labels = [each.label for each in sheet.values]
+    assert {"Dielectric loss tangent", "Lead inductance", "Lead resistance"} <= set(labels)
+    assert "Coupling factor by C/(C0 + C), branch 1" in labels
+    assert "Parallel resonance of the whole circuit, branch 1" in labels
+    assert sheet.source["columns"] == "Frequenz (kHz), Realteil (Ohm), Imaginärteil (Ohm)"
+    assert [caveat for caveat in sheet.caveats if "Windows-1252" not in caveat] == []
+    plain = impedance_sheet(tmp_path / "z.csv", settings=ImpedanceSettings(branches=1, parts=()))
+    assert not {"loss_tangent", "series_inductance", "series_resistance"} & {each.name for each in plain.values}
+
+
 def test_leads_of_a_known_resistance_are_taken_off(tmp_path: Path) -> None:
     f = np.linspace(18e3, 27e3, 361)
     z = 1 / admittance(f) + 40.0

@@ -5,9 +5,11 @@ from pathlib import Path
 from typing import Final, Literal
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.impedance.spectrum import IMPEDANCE_FORMATS
-from sonolube.measurement.measured_files import first_lines, read_head
+from sonolube.measurement.impedance.spectrum import IMPEDANCE_FORMATS, text_lines
+from sonolube.measurement.measured_files import HEAD_SIZE, first_lines, read_head
 from sonolube.measurement.recordings.reader import RECORDING_FORMATS, recognised_mapping
+from sonolube.measurement.recordings.text_recordings import UTF_16_MARKS
+from sonolube.measurement.recordings.text_tables import decoded_content
 from sonolube.measurement.run_columns import RUN_COLUMNS
 from sonolube.measurement.run_headings import run_heading
 from sonolube.measurement.run_table import run_text
@@ -63,10 +65,18 @@ def file_kind(path: Path) -> FileKind:
     if not text.recognises(head, path):
         return "recording" if any(path.suffix.lower() in known.suffixes for known in recordings) else "scan"
     try:
-        named_columns.read(path, first_lines(head)[:-1] or first_lines(head))
+        named_columns.read(path, _whole_lines(head, path))
     except InvalidInput:
         return "runs" if _is_table_of_runs(path) else "recording"
     return "spectrum"
+
+
+def _whole_lines(head: bytes, path: Path) -> list[str]:
+    """Lines of the first bytes of a text, as its reader decodes them, without the one that is cut."""
+    whole = head if len(head) < HEAD_SIZE else head[: head.rfind(b"\n") + 1] or head
+    if whole.startswith(UTF_16_MARKS):
+        return text_lines(head.decode("utf-16", errors="ignore"))[: -1 if len(head) == HEAD_SIZE else None]
+    return text_lines(decoded_content(whole, path)[0])
 
 
 def _is_table_of_runs(path: Path) -> bool:

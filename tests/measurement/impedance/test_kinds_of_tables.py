@@ -45,6 +45,8 @@ def read(folder: Path, content: str, *, name: str = "z.csv", encoding: str = "ut
 MAGNITUDE_AND_PHASE = {
     "ohms": ("Frequency (Hz),|Z| (Ohms),Phase (deg)", (F, np.abs(Z), DEG)),
     "waveforms": ("Frequency (Hz),Trace 1: |Z| (Ohm),Trace 1: Phase (°)", (F, np.abs(Z), DEG)),
+    "without number": ("Frequency (Hz),Trace |Z| (Ohm),Trace θ (deg)", (F, np.abs(Z), DEG)),
+    "fused": ("Freq. (Hz),Zmod (Ohm),θz (deg)", (F, np.abs(Z), DEG)),
     "bode": ("Frequency (Hz),Trace 1: Impedance: Magnitude (kΩ),Trace 1: Phase (rad)", (F, np.abs(Z) / 1e3, RAD)),
     "decibels": ("freq/kHz,Impedance (dBOhm),Angle (degrees)", (F / 1e3, 20 * np.log10(np.abs(Z)), DEG)),
     "log10": ("f [MHz],log10|Z|,arg(Z) [rad]", (F / 1e6, np.log10(np.abs(Z)), RAD)),
@@ -72,6 +74,7 @@ CIRCUITS = {
     "cp percent": ("Frequency (Hz),Cp (nF),tan δ (%)", (F, 1e9 * Y.imag / W, 100 * SIGNED)),
     "cp q": ("Frequency (Hz),Cp (F),Q", (F, Y.imag / W, 1 / SIGNED)),
     "cp g": ("Frequency (Hz),Cp [nF],G [mS]", (F, 1e9 * Y.imag / W, 1e3 * Y.real)),
+    "named twice": ("Frequency f (Hz),Capacitance Cp (F),Loss factor D []", (F, Y.imag / W, SIGNED)),
     "cp rp": ("f (Hz),Cp (F),Rp (Ohm)", (F, Y.imag / W, 1 / Y.real)),
     "cs d": ("Frequency (Hz),Cs (F),D", (F, -1 / (W * Z.imag), DISSIPATION)),
     "cs rs": ("Frequency (Hz),C_s (nF),R_s (Ohm)", (F, -1e9 / (W * Z.imag), Z.real)),
@@ -95,6 +98,7 @@ GERMAN = {
     "parts": ("Frequenz (Hz);Realteil Z (Ω);Imaginärteil Z (Ω)", (F, Z.real, Z.imag)),
     "resistance": ("Messfrequenz (Hz);Wirkwiderstand (Ohm);Blindwiderstand (Ohm)", (F, Z.real, Z.imag)),
     "capacitance": ("Frequenz (Hz);Parallelkapazität (nF);Verlustfaktor", (F, 1e9 * Y.imag / W, SIGNED)),
+    "named twice": ("Frequenz f [Hz];Kapazität Cs [nF];Serienwiderstand Rs [Ohm]", (F, -1e9 / (W * Z.imag), Z.real)),
     "conductance": ("Kreisfrequenz (rad/s);Wirkleitwert (µS);Blindleitwert (µS)", (W, 1e6 * Y.real, 1e6 * Y.imag)),
 }
 COMPLEX: dict[str, Callable[[complex], str]] = {

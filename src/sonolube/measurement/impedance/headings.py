@@ -59,10 +59,10 @@ _MEANINGS: Final = {
 }
 _SIGNED: Final = ("X", "B", "Im S", "theta", "theta_Z", "theta_Y", "theta_S")  # whose negatives are written too
 _FUSED: Final = re.compile(
-    r"(?P<before>re|real|im|imag|abs|mag|mod|arg|phase|ph)?(?P<kind>z|y|s11)"
-    r"(?P<after>re|real|im|imag|abs|mag|mod|arg|phase|phz|ph|theta)?"
+    r"(?P<before>re|real|im|imag|abs|mag|mod|arg|phase|ph|theta|θ)?(?P<kind>z|y|s11)"
+    r"(?P<after>re|real|im|imag|abs|mag|mod|arg|phase|phz|ph|theta|θ)?"
 )
-_TRACE: Final = re.compile(r"(?:trace|tr|ch|channel|kanal|spur)\s*\d+\s*[:\-]?\s*(?=\D)")
+_TRACE: Final = re.compile(r"(?:(?:trace|tr|ch|channel|kanal|spur)\s*\d+|trace\b)\s*[:\-]?\s*(?=\D)")
 _LOGARITHM: Final = re.compile(r"(log10|log_10|lg|ln|log)(?!\w*mag)[\s_]*(?=[\s_(|a-z])(.+)")
 _LONGEST: Final = 200  # characters of a heading that is looked at
 
@@ -223,7 +223,8 @@ def _bare_heading(label: str) -> ColumnHeading | None:
     """Heading without a unit, whose numbers are in SI; None for a phase, which may be in degrees."""
     symbol = _symbol(label, "")
     is_phase = symbol is not None and symbol.startswith("theta")
-    return None if symbol is None or is_phase else ColumnHeading(symbol, _sign(label))
+    is_unclear = is_phase or label.lower() == "w"  # an angular frequency or anything else
+    return None if symbol is None or is_unclear else ColumnHeading(symbol, _sign(label))
 
 
 def _sign(name: str) -> float:
@@ -253,8 +254,15 @@ def is_unit(text: str) -> bool:
 def _symbol(name: str, dimension: str) -> str | None:
     """Symbol of a name; the dimension of its unit tells impedance from admittance where the name does not."""
     plain = _plain(name.strip().lstrip("-"))
-    symbol = _SYMBOLS.get(plain) or _composed(plain, dimension)
+    symbol = _SYMBOLS.get(plain) or _with_its_symbol(plain) or _composed(plain, dimension)
     return symbol if symbol in _SIGNED or _sign(name) > 0 else None
+
+
+def _with_its_symbol(plain: str) -> str | None:
+    """Symbol of a name that is followed by it, such as "parallel capacitance Cp"; None of any other name."""
+    name, _, last = plain.rpartition(" ")
+    symbol = _SYMBOLS.get(last)
+    return symbol if symbol and (_SYMBOLS.get(name) == symbol or symbol in _CIRCUITS.get(name, ())) else None
 
 
 def _composed(plain: str, dimension: str) -> str | None:

@@ -37,7 +37,8 @@ from sonolube.measurement.recordings.text_tables import (
 )
 
 _MAX_NAMED = 12  # columns in a caveat
-_UTF_16_MARKS = (b"\xff\xfe", b"\xfe\xff")
+UTF_16_MARKS = (b"\xff\xfe", b"\xfe\xff")
+"""Byte order marks with which a text in UTF-16 begins."""
 
 
 @final
@@ -54,7 +55,7 @@ class DelimitedText:
 
     def recognises(self, head: bytes, path: Path) -> bool:
         """Whether the first kilobyte has no null byte, or begins with a byte order mark of UTF-16."""
-        return b"\0" not in head[:1024] or head.startswith(_UTF_16_MARKS)
+        return b"\0" not in head[:1024] or head.startswith(UTF_16_MARKS)
 
     def read(self, path: Path, *, mapping: RecordingMapping | None = None) -> RawTable:
         """Numeric columns of a text export.

@@ -14,6 +14,12 @@ const RESIDUALS = [
   ['linear-magnitude', 'magnitude'],
 ];
 const USUAL = RESIDUALS[0][0];
+const CIRCUITS = [
+  ['plain', 'modes alone'],
+  ['loss', 'dielectric loss'],
+  ['leads', 'inductance and resistance of leads'],
+  ['loss-and-leads', 'both'],
+];
 const SWEEP = ['sweep', 'Sweep of the file', 'the first one'];
 const LEADS = ['series_resistance', 'Resistance of the leads', '0 ohm'];
 const MAX_MODES = 8;
@@ -27,8 +33,8 @@ const RIG_NOTE =
  * @returns {import('./files.js').Asked}
  */
 export function taskOf(file, own) {
-  const {branches, residual, sweep, stack, series_resistance} = own;
-  const ofCircuit = {branches: branches && Number(branches), series_resistance};
+  const {branches, residual, sweep, stack, series_resistance, circuit} = own;
+  const ofCircuit = {branches: branches && Number(branches), series_resistance, circuit};
   return {
     task: 'measure impedance',
     args: {files: file, ...stated({residual, sweep, ...(stack ? {stack_of: stack} : ofCircuit)})},
@@ -66,6 +72,16 @@ function Sought({own, set}) {
         choices=${countsTo('as many as are significant', MAX_MODES)}
         value=${own.branches ?? ''}
         onValue=${(value) => set({branches: value || null})}
+      />`
+    }
+    ${
+      !own.stack &&
+      html`<${Choice}
+        name="circuit"
+        label="Beside the modes"
+        choices=${[['', 'what the data demand'], ...CIRCUITS]}
+        value=${own.circuit ?? ''}
+        onValue=${(value) => set({circuit: value || null})}
       />`
     }
     <${Button} onClick=${take} data-test="fit-stack">
