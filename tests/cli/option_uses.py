@@ -193,6 +193,9 @@ MODES = {
         ("OUT/rig.toml", *KNOWN, "--pin", "felt", "--amplitude", "3um", "--layer-thickness", "3mm"),
         {"--layer-thickness": "5mm"},
     ),
+    "new of a calibration": Mode(
+        "new", ("OUT/rig.toml", *KNOWN, "--calibration", "25V=2um"), {"--calibration": "25V=3um", "--amplitude": "3um"}
+    ),
     "new with an actuator": Mode(
         "new",
         ("OUT/rig.toml", *KNOWN, "--actuator", "sa050510", "--voltage", "40V"),

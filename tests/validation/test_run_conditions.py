@@ -177,14 +177,14 @@ def test_twelve_groups_of_conditions_are_left_out_in_turn_and_unlabelled_ones_ar
 def test_unknown_amplitudes_are_in_proportion_to_the_voltage_or_those_of_the_rig() -> None:
     found = known_amplitudes(
         np.array([1e-6, np.nan, np.nan]), np.array([10.0, 5.0, np.nan]), np.array([False, True, True]),
-        own=4e-6, volts=20.0,
+        own=4e-6, per_volt=0.2e-6,
     )  # fmt: skip
     assert found == approx([1e-6, 1e-6, 4e-6])
-    with raises(InvalidInput, match=r"no drive\.voltage_peak_to_peak to scale them by"):
-        known_amplitudes(np.array([np.nan]), np.array([5.0]), np.array([True]), own=4e-6, volts=None)
-    assert known_amplitudes(np.array([np.nan]), np.array([np.nan]), np.array([True]), own=4e-6, volts=None) == approx(
-        [4e-6]
-    )
+    with raises(InvalidInput, match=r"add one pair of them, such as --set vibration\.calibration="):
+        known_amplitudes(np.array([np.nan]), np.array([5.0]), np.array([True]), own=4e-6, per_volt=None)
+    assert known_amplitudes(
+        np.array([np.nan]), np.array([np.nan]), np.array([True]), own=4e-6, per_volt=None
+    ) == approx([4e-6])
 
 
 @pytest.mark.parametrize("name", ["vibration_velocity", "frequency", "sliding_speed", "normal_load"])

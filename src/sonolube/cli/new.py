@@ -44,7 +44,11 @@ _QUESTIONS: Final[tuple[tuple[str, str, str, Callable[[str], object]], ...]] = (
 """Each argument, in their order, with its question, the answer by default and the reader of an answer."""
 
 _NEEDED: Final = ("pin", "disc", "load", "speed", "frequency", "amplitude")
-_INSTEAD: Final = {"amplitude": ("actuator",), "pin_finish": ("finish", "pin_scan"), "disc_finish": ("finish", "scan")}
+_INSTEAD: Final = {
+    "amplitude": ("actuator", "calibration"),
+    "pin_finish": ("finish", "pin_scan"),
+    "disc_finish": ("finish", "scan"),
+}
 """Arguments that take the place of an answer."""
 
 

@@ -26,7 +26,7 @@ from sonolube.rig.amplitude_source import AMPLITUDE_ERROR
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.rig.vibration_direction import NORMAL, VibrationDirection, require_same_direction
 from sonolube.text.units import format_si
-from sonolube.validation.run_conditions import known_amplitudes, pooled_scatter
+from sonolube.validation.run_conditions import amplitude_per_volt, is_by_voltage, known_amplitudes, pooled_scatter
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
@@ -103,6 +103,10 @@ class RigInputs:
         Friction by the rig's own model.
     direction : VibrationDirection
         Of the vibration; within the plane nothing depends on the decay length.
+    amplitude_per_volt : float or None
+        By which amplitudes of runs that state a voltage follow, where it is known. [m/V]
+    scaling : str
+        Caveat on that; empty where the drive of the rig is known.
     """
 
     decay: Input
@@ -115,6 +119,8 @@ class RigInputs:
     voltage_peak_to_peak: float | None
     point: FrictionPoint
     direction: VibrationDirection = NORMAL
+    amplitude_per_volt: float | None = None
+    scaling: str = ""
 
     @property
     def uncertain(self) -> tuple[Input, ...]:
@@ -177,6 +183,7 @@ def rig_inputs(rig: Rig | ResolvedRig, *, takes_plane: bool = False) -> RigInput
     if not point.vibration_amplitude > 0:
         raise InvalidInput(f"{rig.title}: a prediction needs vibration; the vibration amplitude is 0 m")
     length = _measured_decay_length(rig) if rig.direction.is_normal else _NO_LENGTH
+    per_volt, scaling = amplitude_per_volt(rig, own=point.vibration_amplitude)
     return RigInputs(
         decay=length or decay_length_of(learned().friction, known_from="published tests"),
         amplitude=_amplitude(rig, point),
@@ -188,6 +195,8 @@ def rig_inputs(rig: Rig | ResolvedRig, *, takes_plane: bool = False) -> RigInput
         voltage_peak_to_peak=rig.drive.voltage_peak_to_peak,
         point=point,
         direction=rig.direction,
+        amplitude_per_volt=per_volt,
+        scaling=scaling,
     )
 
 
@@ -343,6 +352,8 @@ def own_runs(runs: "xr.Dataset", inputs: RigInputs, *, title: str) -> OwnRuns:
     uncertainty, caveats = _uncertainty(runs, ratio, amplitude, speed)
     uncertainty = np.maximum(uncertainty, _FINEST)
     caveats = (*run_caveats(runs), *copies, *caveats)
+    if inputs.scaling and is_by_voltage(runs).any():
+        caveats += (inputs.scaling,)
     loads = setting(runs, "normal_load", inputs.normal_load)
     if np.any(np.abs(loads / inputs.normal_load - 1) > 0.5):
         caveats += ("some runs have a load far from the rig's; the friction model does not depend on the load",)
@@ -372,7 +383,8 @@ def _amplitudes(runs: "xr.Dataset", inputs: RigInputs) -> Floats:
     """Amplitude of each run; by its voltage in proportion to the rig's, where only that is stated."""
     amplitude, voltage = (setting(runs, name, np.nan) for name in ("vibration_amplitude", "voltage_peak_to_peak"))
     own, volts = inputs.amplitude.value, inputs.voltage_peak_to_peak
-    return known_amplitudes(amplitude, voltage, np.isnan(amplitude), own=own, volts=volts)
+    per_volt = own / volts if volts else inputs.amplitude_per_volt
+    return known_amplitudes(amplitude, voltage, np.isnan(amplitude), own=own, per_volt=per_volt)
 
 
 def _uncertainty(runs: "xr.Dataset", ratio: Floats, amplitude: Floats, speed: Floats) -> tuple[Floats, tuple[str, ...]]:

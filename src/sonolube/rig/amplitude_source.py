@@ -74,6 +74,20 @@ def available_sources(rig: Rig) -> tuple[AmplitudeSource, ...]:
     return tuple(source for source in AMPLITUDE_SOURCES if present[source])
 
 
+def stated_per_volt(rig: Rig) -> tuple[float, str] | None:
+    """Amplitude over voltage of a rig whose own drive voltage is not stated, in m/V, and where it is from.
+
+    By its calibration, or the voltage under which its amplitude was measured; None where it has neither.
+    """
+    if rig.amplitude_per_volt is not None:
+        return rig.amplitude_per_volt, f"the calibration of {format_si(rig.amplitude_per_volt, 'm/V')}"
+    under = rig.measured_under
+    if rig.vibration_amplitude is None or under is None or not under.voltage_peak_to_peak:
+        return None
+    volts, amplitude = format_si(under.voltage_peak_to_peak, "V"), format_si(rig.vibration_amplitude, "m")
+    return rig.vibration_amplitude / under.voltage_peak_to_peak, f"the measured {amplitude} at {volts}"
+
+
 def chosen_source(rig: Rig, sources: tuple[AmplitudeSource, ...]) -> AmplitudeSource:
     """Source of a rig's amplitude among those that it has: the one that it names, else the first."""
     source = rig.amplitude_source or next(iter(sources), None)
@@ -183,7 +197,7 @@ _MISSING: dict[AmplitudeSource, Callable[[Rig], str]] = {
     "measured": _missing_measurement,
     "computed": lambda rig: "give the tables stack and structure",
     "waveguide": lambda rig: "give the table waveguide",
-    "per-volt": lambda rig: "give actuator.amplitude_per_volt and drive.voltage_peak_to_peak",
+    "per-volt": lambda rig: "give actuator.amplitude_per_volt or vibration.calibration, and drive.voltage_peak_to_peak",
 }
 
 

@@ -20,6 +20,7 @@ from sonolube.measurement.measured_runs import (
 )
 from sonolube.models.contact import RoughContact
 from sonolube.rig import Rig, steady_vibration
+from sonolube.rig.amplitude_source import stated_per_volt
 from sonolube.rig.vibration_direction import NORMAL, require_same_direction
 from sonolube.text.units import format_si
 
@@ -165,8 +166,27 @@ def run_conditions(runs: "xr.Dataset", rig: Rig | None = None) -> RunsTable:
         for place, one in enumerate(conditions)
     )
     return RunsTable(
-        title=title, conditions=lettered, runs=ratio.size, scatter=scatter, caveats=(*run_caveats(runs), *copies)
+        title=title,
+        conditions=lettered,
+        runs=ratio.size,
+        scatter=scatter,
+        caveats=(*run_caveats(runs), *copies, *_scaling(runs, rig)),
     )
+
+
+def _scaling(runs: "xr.Dataset", rig: Rig | None) -> tuple[str, ...]:
+    """Caveat on amplitudes that follow from voltages by a calibration."""
+    if rig is None or not is_by_voltage(runs).any():
+        return ()
+    _, caveat = amplitude_per_volt(rig, own=1.0)
+    return (caveat,) if caveat else ()
+
+
+def is_by_voltage(runs: "xr.Dataset") -> NDArray[np.bool_]:
+    """Which runs state a voltage and neither amplitude nor velocity; shape (n,)."""
+    names = ("voltage_peak_to_peak", "vibration_amplitude", "vibration_velocity")
+    voltage, amplitude, velocity = (np.isfinite(setting(runs, name, np.nan)) for name in names)
+    return np.asarray(voltage & ~amplitude & ~velocity)
 
 
 def _inputs(runs: "xr.Dataset", rig: Rig | None) -> dict[str, Floats]:
@@ -205,21 +225,36 @@ def _amplitudes(runs: "xr.Dataset", rig: Rig | None) -> Floats:
         return amplitude
     if not np.any(unknown):
         return amplitude
+    own = steady_vibration(rig).vibration_amplitude
+    return known_amplitudes(amplitude, voltage, unknown, own=own, per_volt=amplitude_per_volt(rig, own=own)[0])
+
+
+def amplitude_per_volt(rig: Rig, *, own: float) -> tuple[float | None, str]:
+    """Amplitude over voltage by which runs that state a voltage are scaled, and a caveat; None where nothing tells it.
+
+    `own` is the amplitude of the rig, in m, at its own drive voltage where it states one.
+    """
     volts = None if rig.drive is None else rig.drive.voltage_peak_to_peak
-    return known_amplitudes(amplitude, voltage, unknown, own=steady_vibration(rig).vibration_amplitude, volts=volts)
+    if volts:
+        return own / volts, ""
+    stated = stated_per_volt(rig)
+    if stated is None:
+        return None, ""
+    return stated[0], f"amplitudes of runs that state a voltage are taken as proportional to it, by {stated[1]}"
 
 
 def known_amplitudes(
-    amplitude: Floats, voltage: Floats, unknown: NDArray[np.bool_], *, own: float, volts: float | None
+    amplitude: Floats, voltage: Floats, unknown: NDArray[np.bool_], *, own: float, per_volt: float | None
 ) -> Floats:
-    """Amplitudes, unknown ones by their voltage in proportion to the rig's own, else the rig's own. [m]"""
+    """Amplitudes, unknown ones by their voltage and the amplitude per volt, else the rig's own. [m]"""
     by_voltage = unknown & np.isfinite(voltage)
     if np.any(by_voltage):
-        if volts is None:
+        if per_volt is None:
             raise InvalidInput(
-                "the runs state voltages, but the rig has no drive.voltage_peak_to_peak to scale them by"
+                "the runs state voltages, but the rig says of none which amplitude it gives: add one pair of them,"
+                ' such as --set vibration.calibration="25 V = 2 um"'
             )
-        amplitude = np.where(by_voltage, own * voltage / volts, amplitude)
+        amplitude = np.where(by_voltage, per_volt * voltage, amplitude)
     return np.where(unknown & ~by_voltage, own, amplitude)
 
 

@@ -243,7 +243,7 @@ def _rig(file: RigFile) -> Rig:
         sliding_speed=file.sliding.sliding_speed,
         vibration_amplitude=None if file.vibration is None else file.vibration.vibration_amplitude,
         measured_under=None if file.vibration is None else file.vibration.measured_under(),
-        amplitude_per_volt=None if file.actuator is None else file.actuator.amplitude_per_volt,
+        amplitude_per_volt=_amplitude_per_volt(file),
         waveguide_amplitude=_waveguide_amplitude(file, drive),
         amplitude_source=None if file.vibration is None else file.vibration.amplitude_source,
         direction=file.direction(),
@@ -258,6 +258,13 @@ def _rig(file: RigFile) -> Rig:
         uncertainty=distributions_of(file),
     )
     return rig if structure is None else driven_rig(rig)
+
+
+def _amplitude_per_volt(file: RigFile) -> float | None:
+    calibration = None if file.vibration is None else file.vibration.calibrated()
+    if calibration is not None:
+        return calibration.amplitude_per_volt
+    return None if file.actuator is None else file.actuator.amplitude_per_volt
 
 
 def _stack_and_structure(file: RigFile) -> tuple[PiezoStack | None, Structure | None]:

@@ -17,6 +17,7 @@ from sonolube.rig.file.section import NameIn, Section
 from sonolube.rig.file.structures import StructureSection
 from sonolube.rig.record import AmplitudeSource, MeasuredUnder, check_stated
 from sonolube.rig.vibration_direction import NORMAL, DirectionWord, SecondWord, VibrationDirection
+from sonolube.rig.voltage_calibration import VoltageCalibration, voltage_calibration
 from sonolube.vocabulary import Quantity
 
 
@@ -162,6 +163,10 @@ class VibrationSection(Section):
     voltage_peak_to_peak: float | None = None
     frequency: float | None = None
     normal_load: float | None = None
+    calibration: Text | None = Field(
+        default=None,
+        description='Drive voltage, peak to peak, and the amplitude that it gives, taken as linear: "25 V = 2 um"',
+    )
     amplitude_source: AmplitudeSource | None = None
     direction: DirectionWord | None = Field(
         default=None, description='Direction of the vibration, which its amplitude is of; "normal" where absent'
@@ -177,6 +182,9 @@ class VibrationSection(Section):
 
     def require_possible(self) -> None:
         """Refuse a negative amplitude, conditions of a measurement that is not there or has none, and directions."""
+        if self.calibration is not None and self.voltage_peak_to_peak is not None:
+            raise InvalidInput("calibration and voltage_peak_to_peak both relate an amplitude to a voltage: give one")
+        self.calibrated()
         conditions = (self.voltage_peak_to_peak, self.frequency, self.normal_load)
         if self.vibration_amplitude is None and any(value is not None for value in conditions):
             raise InvalidInput("drive and load of a measurement need vibration_amplitude")
@@ -184,6 +192,10 @@ class VibrationSection(Section):
         self.measured_under()
         self._require_one_second_component()
         self.path()
+
+    def calibrated(self) -> VoltageCalibration | None:
+        """Calibration of the drive; None where there is none."""
+        return None if self.calibration is None else voltage_calibration(self.calibration)
 
     def path(self) -> VibrationDirection:
         """Direction with the second component."""
@@ -267,10 +279,20 @@ class RigFile(Section):
         if per_volt and (self.drive is None or self.drive.voltage_peak_to_peak is None):
             raise ValueError("actuator.amplitude_per_volt needs drive.voltage_peak_to_peak")
         measured = self.vibration is not None and self.vibration.vibration_amplitude is not None
+        driven = self.drive is not None and self.drive.voltage_peak_to_peak is not None
+        if self.vibration is not None and self.vibration.calibration is not None:
+            if per_volt:
+                raise ValueError("vibration.calibration and actuator.amplitude_per_volt say the same: give one")
+            if measured and driven:
+                raise ValueError(
+                    "vibration.calibration, vibration.vibration_amplitude and drive.voltage_peak_to_peak: two of them"
+                    " give the third; leave one out"
+                )
+            per_volt = driven
         if not (per_volt or measured or self.waveguide or self.structure):
             raise ValueError(
-                "no vibration: give vibration.vibration_amplitude, actuator.amplitude_per_volt, the table waveguide or"
-                " the tables stack and structure"
+                "no vibration: give vibration.vibration_amplitude, actuator.amplitude_per_volt or vibration.calibration"
+                " with drive.voltage_peak_to_peak, the table waveguide or the tables stack and structure"
             )
         named = self.vibration is not None and self.vibration.amplitude_source is not None
         if self.waveguide is not None and self.structure is not None and not named:

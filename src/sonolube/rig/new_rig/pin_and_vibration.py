@@ -21,6 +21,7 @@ from sonolube.rig.file.contact_section import height_of_finish
 from sonolube.rig.friction_and_wear import CENTRAL_SHARE, PUBLISHED_DECAY_LENGTH
 from sonolube.rig.record import STATED
 from sonolube.rig.vibration_direction import VibrationDirection
+from sonolube.rig.voltage_calibration import VoltageCalibration
 from sonolube.text.units import format_si
 
 _STATED_AMPLITUDE: Final = 0.15
@@ -183,7 +184,33 @@ class DrivenActuator:
         )
 
 
-Vibration = StatedAmplitude | DrivenActuator
+@dataclass(frozen=True, kw_only=True, slots=True)
+class CalibratedDrive:
+    """Vibration of a drive of which one voltage and its amplitude are known.
+
+    Parameters
+    ----------
+    calibration : VoltageCalibration
+    vibration_amplitude : float or None
+        Zero to peak, to which the voltage follows; None for that of the calibration. [m]
+    """
+
+    calibration: VoltageCalibration
+    vibration_amplitude: float | None = None
+
+    def entries(self, frequency: float) -> Entries:
+        """Tables drive and vibration."""
+        amplitude = self.vibration_amplitude or self.calibration.vibration_amplitude
+        StatedAmplitude(vibration_amplitude=amplitude)  # refuses what no vibration is
+        volts = amplitude / self.calibration.amplitude_per_volt
+        drive = {"voltage_peak_to_peak": toml_text(volts, "V"), "frequency": toml_text(frequency, "Hz")}
+        return Entries(
+            tables={"drive": drive, "vibration": {"calibration": json.dumps(self.calibration.text)}},
+            assumptions={"vibration.calibration": f"{STATED}; the amplitude is taken as proportional to the voltage"},
+        )
+
+
+Vibration = StatedAmplitude | DrivenActuator | CalibratedDrive
 """Source of the vibration of the contact."""
 
 

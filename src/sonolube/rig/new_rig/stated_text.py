@@ -12,6 +12,7 @@ from sonolube.models.actuator import catalogue_actuator
 from sonolube.rig.file.contact_section import is_roughness
 from sonolube.rig.file.section import plausible_si, require_plausible
 from sonolube.rig.new_rig.pin_and_vibration import (
+    CalibratedDrive,
     DrivenActuator,
     FlatPin,
     KnownSurface,
@@ -23,6 +24,7 @@ from sonolube.rig.new_rig.pin_and_vibration import (
     scanned_surface,
 )
 from sonolube.rig.vibration_direction import VibrationDirection
+from sonolube.rig.voltage_calibration import voltage_calibration
 from sonolube.text.units import format_si, to_si
 
 SHAPE_FORMS: Final = (
@@ -119,7 +121,15 @@ def rotation_of(text: str) -> float | None:
 
 
 def vibration_of(text: str, *, name: str = "--amplitude") -> Vibration:
-    """Vibration by its amplitude, such as "3um", or by an actuator with its voltage, such as "sa050510 50V"."""
+    """Vibration by its amplitude, such as "3um", by an actuator with its voltage, such as "sa050510 50V", or by both.
+
+    A pair such as "25V = 2um" is a calibration; behind a semicolon, as in "25V = 2um; 3um", stands another amplitude.
+    """
+    if "=" in text:
+        pair, _, amplitude = text.partition(";")
+        calibration = voltage_calibration(pair, name="--calibration" if name.startswith("--") else "calibration")
+        own = reader("m", name=name)(amplitude.strip()) if amplitude.strip() else None
+        return CalibratedDrive(calibration=calibration, vibration_amplitude=own)
     if text[:1].isalpha():
         actuator, _, voltage = text.partition(" ")
         volts = reader("V", name="--voltage" if name.startswith("--") else "voltage")(voltage)

@@ -216,12 +216,13 @@ def _amplitudes(inputs: RigInputs, vibration: str | None, voltage: str | None) -
     if vibration is not None and voltage is not None:
         raise InvalidInput(f"{shown('vibration')} and {shown('voltage')} both set the amplitude; give one")
     if voltage is not None:
-        if inputs.voltage_peak_to_peak is None:
+        if inputs.amplitude_per_volt is None:
             raise InvalidInput(
-                f"{shown('voltage')} needs the rig's drive.voltage_peak_to_peak to scale by; give {shown('vibration')}"
+                f"{shown('voltage')} needs the rig's drive.voltage_peak_to_peak or vibration.calibration to scale by;"
+                f" give {shown('vibration')}"
             )
         volts = factor_values(voltage, unit="V", option=shown("voltage"), count=_AMPLITUDES)
-        return np.asarray(inputs.amplitude.value * volts / inputs.voltage_peak_to_peak)
+        return np.asarray(inputs.amplitude_per_volt * volts)
     if vibration is not None:
         return factor_values(vibration, unit="m", option=shown("vibration"), count=_AMPLITUDES)
     return inputs.amplitude.value * np.linspace(_MIN_AMPLITUDE, 1.0, _AMPLITUDES)

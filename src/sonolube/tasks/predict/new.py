@@ -27,6 +27,7 @@ _ONE_OF = (
     ("disc_finish", "scan"),
     ("decay_length", "stiffness"),
     ("amplitude", "actuator"),
+    ("actuator", "calibration"),
 )
 
 
@@ -54,6 +55,13 @@ def new(
         str | None, Parameter("Actuator by its name in sonolube actuators, in place of the amplitude.", "NAME")
     ] = None,
     voltage: Annotated[Number | None, Quantity("Voltage of the actuator, peak to peak.", "V")] = None,
+    calibration: Annotated[
+        str | None,
+        Parameter(
+            "Voltage of the drive, peak to peak, and its amplitude, such as '25V = 2um': scales own runs by voltage.",
+            "VOLTAGE=AMPLITUDE",
+        ),
+    ] = None,
     shape: Annotated[
         str | None,
         Parameter(
@@ -118,10 +126,13 @@ def new(
     0.27
     """
     every = {"amplitude": amplitude, "actuator": actuator, "voltage": voltage, "pin_finish": pin_finish}
+    every |= {"calibration": calibration}
     refuse_two_of_one(every | {"pin_scan": pin_scan, "disc_finish": disc_finish, "scan": scan})
     refuse_two_of_one({"decay_length": decay_length, "stiffness": stiffness})
-    if amplitude is None and actuator is None:
-        raise InvalidInput(f"give {shown('amplitude')}, or {shown('actuator')} with its {shown('voltage')}")
+    if amplitude is None and actuator is None and calibration is None:
+        raise InvalidInput(
+            f"give {shown('amplitude')}, {shown('calibration')}, or {shown('actuator')} with its {shown('voltage')}"
+        )
     sliding_speed, speed_reason = speed_of(
         _text(speed, "m/s") or "",
         track_radius=_text(track_radius, "m"),
@@ -138,7 +149,7 @@ def new(
         sliding_speed=sliding_speed,
         speed_reason=speed_reason,
         frequency=_read("frequency", frequency, "Hz"),
-        vibration=vibration_of(stated_vibration(amplitude, actuator, voltage), name=shown("amplitude")),
+        vibration=vibration_of(stated_vibration(amplitude, actuator, voltage, calibration), name=shown("amplitude")),
         pin_surface=_surface(pin_scan, pin_finish or finish),
         disc_surface=_surface(scan, disc_finish or finish),
         friction_coefficient=_read_optional("friction", friction, ""),
@@ -221,8 +232,12 @@ def refuse_two_of_one(given: Mapping[str, object]) -> None:
         raise InvalidInput(f"{shown('actuator')} and {shown('voltage')} belong together: give both or neither")
 
 
-def stated_vibration(amplitude: Number | None, actuator: str | None, voltage: Number | None) -> str:
-    """Source of the vibration as one text: an amplitude, or an actuator and its voltage."""
+def stated_vibration(
+    amplitude: Number | None, actuator: str | None, voltage: Number | None, calibration: str | None = None
+) -> str:
+    """Source of the vibration as one text: an amplitude, a calibration before it, or an actuator and its voltage."""
+    if calibration is not None:
+        return f"{calibration}; {_text(amplitude, 'm') or ''}"
     return _text(amplitude, "m") or "" if actuator is None else f"{actuator} {_text(voltage, 'V')}"
 
 
