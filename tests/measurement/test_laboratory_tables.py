@@ -13,6 +13,7 @@ from tests.measurement.laboratory_tables import FULL, LABORATORY_TABLES, Laborat
 import sonolube
 from sonolube.errors import InvalidInput, MissingPackage
 from sonolube.measurement.measured_runs import read_runs, run_caveats
+from sonolube.rig import Rig
 from sonolube.tasks.lookup.mapping import MappingAnswer
 from sonolube.vocabulary import quantities
 
@@ -64,6 +65,21 @@ def test_what_the_command_mapping_writes_is_read_right(name: str, tmp_path: Path
     answer = sonolube.mapping(path, column=table.statements, decimal_sign=table.decimal_sign)
     assert answer.object()["friction_ratios"] == approx(list(table.right["friction_ratio"]))
     require_right(read_runs(path, mapping=mapping_file(answer, tmp_path)), table)
+
+
+@pytest.fixture(scope="module")
+def rig() -> Rig:
+    known = {"pin": "brass", "disc": "304", "load": "5N", "speed": "0.2m/s", "frequency": "20kHz"}
+    return sonolube.new(**known, calibration="25V = 2um").rig
+
+
+@pytest.mark.parametrize("name", [name for name, table in LABORATORY_TABLES.items() if table.is_asked])
+def test_fit_takes_what_the_command_mapping_writes(name: str, rig: Rig, tmp_path: Path) -> None:
+    table = LABORATORY_TABLES[name]
+    path = written(table, tmp_path)
+    answer = sonolube.mapping(path, column=table.statements, decimal_sign=table.decimal_sign)
+    found = sonolube.fit(path, rig=rig, mapping=mapping_file(answer, tmp_path), model=["kinematic-fitted"])
+    assert "4 runs" in str(found)
 
 
 def mapping_file(answer: MappingAnswer, folder: Path) -> Path:

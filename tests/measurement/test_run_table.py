@@ -163,6 +163,35 @@ def test_digits_of_forces_give_the_resolution_of_their_ratio(tmp_path: Path) -> 
     assert float(ratios["friction_reduction_resolution"][0]) == approx(0.005 / 3**0.5)
 
 
+HEADS = "Load [N],Speed [mm/s],Amplitude [um],COF on,COF off"
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        f"# {HEADS}\n5.0,200,1.0,0.3,0.4\n",  # as numpy writes headings
+        "Normal load FN [N],sliding velocity v_s [mm/s],amplitude a [um],COF on,COF off\n5.0,200,1.0,0.3,0.4\n",
+        f"time,{HEADS}\n12:03,5.0,200,1.0,0.3,0.4\n",
+        "Load [N],Speed [mm/s],Amplitude [um],Mode,COF\n5.0,200,1.0,without US,0.4\n5.0,200,1.0,with US,0.3\n",
+        "Load [N],Speed [mm/s],Amplitude [um],F on [N],F off [N]\n5.0,200,1.0,-1.5,-2.0\n",
+    ],
+)
+def test_other_habits_of_tables_are_read(content: str, tmp_path: Path) -> None:
+    runs = read_runs(written(tmp_path, content))
+    found = {name: float(runs[name][0]) for name in ("normal_load", "sliding_speed", "vibration_amplitude")}
+    assert found == approx({"normal_load": 5.0, "sliding_speed": 0.2, "vibration_amplitude": 1e-6})
+    assert 1 - runs["friction_reduction"].to_numpy() == approx([0.75])
+
+
+def test_turned_signs_and_times_of_the_day_are_said(tmp_path: Path) -> None:
+    text = "time,F on [N],F off [N]\n12:03,-1.5,-2.0\n"
+    said = run_caveats(read_runs(written(tmp_path, text)))
+    assert said == (
+        "1 column is left out: 'time'",
+        "no friction force is positive: the sign is taken as that of the sensor, and turned",
+    )
+
+
 def test_other_headings_of_the_vocabulary_belong_to_one_quantity_each() -> None:
     every = [each.casefold() for known in quantities().values() for each in known.also]
     assert len(every) == len(set(every))

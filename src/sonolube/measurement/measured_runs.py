@@ -140,7 +140,7 @@ def _runs(table: RunTable, path: Path) -> "xr.Dataset":
 
     table = _switched_on(table, path)
     columns, digits = dict(table.columns), dict(table.digits)
-    count = len(table.lines)
+    count, turned = len(table.lines), _turn_signs(columns)
     without = np.zeros(count, bool)
     for name in _FRICTIONS:
         is_reference = _references(columns, name, table.without)
@@ -160,7 +160,7 @@ def _runs(table: RunTable, path: Path) -> "xr.Dataset":
         raise InvalidInput(f"{path}: no run has a result yet: fill in {FRICTION_COLUMNS}")
     data = {name: ("run", values[known]) for name, values in columns.items()}
     data |= {name: ("run", np.array(cells)[known]) for name, cells in table.texts.items()}
-    caveats = [*table.caveats, *([_skipped(empty, table.lines)] if empty.any() else [])]
+    caveats = [*table.caveats, *turned, *([_skipped(empty, table.lines)] if empty.any() else [])]
     return xr.Dataset(data, attrs={"title": f"{path.name}, in %", "caveats": "\n".join(caveats)})
 
 
@@ -213,6 +213,17 @@ def _named(name: str) -> str:
 def run_caveats(runs: "xr.Dataset") -> tuple[str, ...]:
     """Caveats of the reading of a table of runs, a line each."""
     return tuple(line for line in str(runs.attrs.get("caveats", "")).split("\n") if line)
+
+
+def _turn_signs(columns: dict[str, Floats]) -> tuple[str, ...]:
+    """Make forces positive of which none is, the sign being that of the sensor, with a caveat."""
+    names = [name for name in (_FRICTIONS[0], f"intrinsic_{_FRICTIONS[0]}") if name in columns]
+    forces = np.concatenate([columns[name] for name in names]) if names else np.array([])
+    if "force_zero" in columns or not np.any(forces < 0) or np.any(forces > 0):
+        return ()
+    for name in names:
+        columns[name] = -columns[name]
+    return ("no friction force is positive: the sign is taken as that of the sensor, and turned",)
 
 
 def _references(columns: Mapping[str, Floats], name: str, stated: NDArray[np.bool_] | None) -> NDArray[np.bool_]:

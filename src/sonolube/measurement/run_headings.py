@@ -197,7 +197,7 @@ def _with_unit(text: str) -> Iterator[RunHeading]:
     for pattern in (*_WITH_UNIT, _UNIT_WITHIN):
         if found := pattern.fullmatch(text):
             words = _plain(" ".join((found[1], *found.groups()[2:])))
-            each = RunHeading(_names()[words], found[2].strip()) if words in _names() else None
+            each = RunHeading(known, found[2].strip()) if (known := _named(words)) else None
             if each is not None and (len(words) > 1 or fits(each)):  # one letter stands for many things
                 yield each
     for gap in reversed(list(re.finditer(r"[\s_]+", text))):
@@ -206,6 +206,16 @@ def _with_unit(text: str) -> Iterator[RunHeading]:
             is_number = name not in TEXT_NAMES and not quantities()[name].unit
             if fits(found_behind) and (not is_number or found_behind.unit in _PARTS):
                 yield found_behind
+
+
+def _named(words: str) -> str:
+    """Quantity of words that name it, alone or with its symbol behind them; empty where they name none."""
+    if name := _names().get(words):
+        return name
+    parts = words.split()
+    both = ((" ".join(parts[:at]), " ".join(parts[at:])) for at in range(1, len(parts)))
+    pairs = ((_names().get(before, ""), _names().get(behind)) for before, behind in both)
+    return next((before for before, behind in pairs if before and before == behind), "")
 
 
 def _of_peaks(text: str) -> RunHeading | None:
@@ -282,7 +292,7 @@ _STATES: Final = {
 }  # whether a row is with vibration, by the word in a column of states
 _IS_STATE: Final = re.compile(
     r"ultraso|ultrascha|\bus\b|vibration|schwingung|\bstate|zustand|sonotrod|excitation|anregung"
-    r"|on ?/ ?off|(?:ein|an) ?/ ?aus"
+    r"|\bmode\b|\bmodus\b|on ?/ ?off|(?:ein|an) ?/ ?aus"
 )
 
 
@@ -305,7 +315,8 @@ def is_without_vibration(cells: Sequence[str], place: int) -> bool:
 
 def _state_word(cells: Sequence[str], place: int) -> str:
     """Word for the state in a row."""
-    return cells[place].strip().casefold() if place < len(cells) else ""
+    words = (cells[place] if place < len(cells) else "").casefold().split()
+    return " ".join(each for each in words if each.strip("()") not in _OF_VIBRATION)
 
 
 LEFT_OUT: Final = "-"

@@ -81,6 +81,11 @@ def laid_out_text(text: str, layout: TextLayout, path: Path) -> LaidOut:
             break
         first += 1
     is_fixed = layout.lines_to_skip > 0
+    if not is_fixed and first and first < len(lines) and _is_row_of_numbers(lines[first]):
+        bare = lines[first - 1].lstrip("#%/ \t")  # as numpy.savetxt writes its headings
+        if max(_count(re.split(each, bare)) for each in ("[;\t,|]", r"\s{2,}", r"\s+")) >= _FEWEST_KNOWN:
+            first -= 1
+            lines[first] = bare
     separator = separator or _separator(lines, first, path, is_fixed=is_fixed)
     rows = _rows(lines, first, separator, path, is_whole=True)
     if not rows:
@@ -169,6 +174,12 @@ def _rows(lines: Sequence[str], first: int, separator: str, path: Path, *, is_wh
         if is_whole:
             raise InvalidInput(f"{path}: line {begins}: {failure}") from None
     return rows
+
+
+def _is_row_of_numbers(line: str) -> bool:
+    """Whether a line has nothing but numbers."""
+    cells = re.split(r"[;\t|\s]+|,(?!\d)|(?<=\d),(?=\d)", line.strip())
+    return all(_is_number(cell) for cell in cells)
 
 
 def _is_comment(line: str) -> bool:

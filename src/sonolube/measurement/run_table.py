@@ -185,7 +185,7 @@ def assigned_columns(
     mapped = _by_mapping(path, labels, mapping) if mapping else []
     taken = {*(each.source.column for each in mapped), *(mapping.selection.without if mapping else ())}
     state = state_column(labels, rows, taken)
-    others, left_out = _by_headings(path, line, labels, mapped, mapping, state)
+    others, left_out = _by_headings(path, line, labels, mapped, mapping, state, rows)
     layout = mapping.text if mapping else TextLayout()
     numbers = [each for each in (*mapped, *others) if each.name not in TEXT_NAMES]
     words = [each for each in (*mapped, *others) if each.name in TEXT_NAMES]
@@ -265,6 +265,7 @@ def _by_headings(
     mapped: Sequence[_Column],
     mapping: RecordingMapping | None,
     state: int | None,
+    rows: Sequence[NumberedCells],
 ) -> tuple[list[_Column], list[str]]:
     """Other columns by their headings, and labels of those left out; of unknown meaning, refused where it matters."""
     places, names = {each.place for each in mapped}, {each.name for each in mapped}
@@ -281,6 +282,8 @@ def _by_headings(
         found = run_heading(label)
         if not without.isdisjoint((label, numbered)) or (found is not None and found.name in names):
             left_out.append(numbered)
+        elif found is not None and found.name == "time" and not _has_numbers(rows, place):
+            left_out.append(numbered)  # of the day
         elif found is None:
             _require_harmless(path, line, place, label)
             left_out.append(numbered)
@@ -292,6 +295,12 @@ def _by_headings(
             known[found.name] = label
             columns.append(_Column(found.name, place, replace(found.source(label), unit=found.unit)))
     return columns, left_out
+
+
+def _has_numbers(rows: Sequence[NumberedCells], place: int) -> bool:
+    """Whether each filled cell of a column holds a number with either decimal sign."""
+    cells = [cell for _, row in rows if (cell := _cell(row, place))]
+    return all(any(cell_number(cell, sign=sign) is not None for sign in ".,") for cell in cells)
 
 
 def _require_harmless(path: Path, line: int, place: int, label: str) -> None:

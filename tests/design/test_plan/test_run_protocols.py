@@ -1,5 +1,6 @@
 """Protocols, table and figure of a plan made by hand."""
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -12,6 +13,7 @@ from sonolube.design.test_plan.candidates import RigLimits
 from sonolube.design.test_plan.comparison import BLOCKINGS, PlannedRun, RunPart
 from sonolube.design.test_plan.plan import Procedure, Question
 from sonolube.design.test_plan.run_protocols import has_results, has_voltage, plan_chart, run_protocols, run_table
+from sonolube.measurement.measured_runs import read_runs
 
 PROCEDURE = Procedure(intrinsic_distance=1.0, vibrated_distance=0.5, measuring_time=12.0)
 RUNS = (
@@ -63,14 +65,25 @@ def test_the_table_has_a_row_for_each_run_in_the_units_of_its_heads() -> None:
     lines = run_table(plan_of()).splitlines()
     assert lines == [
         "run,block,normal_load [N],sliding_speed [mm/s],voltage_peak_to_peak [V],vibration_amplitude [um],"
-        "friction_force [N],intrinsic_friction_force [N]",
-        "1,1,4,50,20,2,,",
-        "2,2,2,100,10,1,,",
+        "friction_force [N],intrinsic_friction_force [N],friction_coefficient,intrinsic_friction_coefficient",
+        "1,1,4,50,20,2,,,,",
+        "2,2,2,100,10,1,,,,",
     ]
     unknown = plan_of()
     unknown.candidates.voltage_peak_to_peak = np.full(3, np.nan)
     assert not has_voltage(unknown)
-    assert run_table(unknown).splitlines()[1] == "1,1,4,50,2,,"
+    assert run_table(unknown).splitlines()[1] == "1,1,4,50,2,,,,"
+
+
+def test_a_sheet_that_is_filled_with_coefficients_is_read_back(tmp_path: Path) -> None:
+    text = run_table(plan_of())
+    assert not has_results(text)
+    filled = text.replace("1,1,4,50,20,2,,,,", "1,1,4,50,20,2,,,0.2,0.4").replace(
+        "2,2,2,100,10,1,,,,", "2,2,2,100,10,1,,,0.3,0.4"
+    )
+    assert has_results(filled)
+    (tmp_path / "plan-runs.csv").write_text(filled)
+    assert 1 - read_runs(tmp_path / "plan-runs.csv")["friction_reduction"].to_numpy() == approx([0.5, 0.75])
 
 
 @pytest.mark.parametrize(

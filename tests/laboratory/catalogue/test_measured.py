@@ -180,14 +180,14 @@ def test_what_is_lubricated_or_has_no_friction_is_left_out_with_a_line(tmp_path:
     assert len(rows) == 1
     assert left_out == [
         f"{oiled.name}: part 1 of the recording left out: lubricated, and models of friction are of dry contacts",
-        f"{warm.name}: part 1 is left out: it has no channel friction_force",
+        f"{warm.name}: part 1 is left out: it has no channel friction_force, nor friction_coefficient with a load",
         f"none: left out: {tmp_path / 'none'}: holds no run: it has no file run.json",
     ]
 
 
 def recording(path: Path, **columns: np.ndarray) -> None:
     """Table of 5 s at 100 Hz with a column a channel."""
-    heads = ["time (s)", *(f"{name} ({UNITS[name]})" for name in columns)]
+    heads = ["time (s)", *(f"{name} ({UNITS[name]})" if name in UNITS else name for name in columns)]
     values = np.stack([np.arange(500) / 100, *columns.values()], 1)
     np.savetxt(path, values, delimiter=",", header=",".join(heads), comments="")
 
@@ -233,6 +233,14 @@ def test_recordings_that_were_taken_in_have_the_load_and_speed_of_their_facts(tm
         ("20.0", "21000.0", 0.3),
     ]
     assert {row[11] for row in rows} == {"Steps"}
+
+
+def test_a_coefficient_of_friction_counts_by_the_load_of_the_facts(tmp_path: Path) -> None:
+    recording(tmp_path / "b.csv", friction_coefficient=np.full(500, 0.4))
+    folder = take_in(tmp_path / "runs", tmp_path / "b.csv", facts={"normal_load": 3.0, "sliding_speed": 0.02})
+    (_, row), left_out = level_rows([folder])
+    assert left_out == []
+    assert float(row[6]) == approx(1.2)
 
 
 def test_of_a_folder_the_recordings_alone_are_taken_in_by_name(tmp_path: Path) -> None:

@@ -22,8 +22,9 @@ _COLUMNS = (
     ("voltage_peak_to_peak", "V", 1.0),
     ("vibration_amplitude", "um", 1e6),
 )
-RESULTS = ("friction_force [N]", "intrinsic_friction_force [N]")
-"""Columns that the laboratory fills."""
+_FORCES: Final = ("friction_force [N]", "intrinsic_friction_force [N]")
+RESULTS: Final = (*_FORCES, "friction_coefficient", "intrinsic_friction_coefficient")
+"""Columns of which the laboratory fills the two that it measures: forces, or coefficients of friction."""
 
 
 def run_table(plan: TestPlan) -> str:
@@ -40,7 +41,8 @@ def run_table(plan: TestPlan) -> str:
 def has_results(text: str) -> bool:
     """Whether a table of runs holds any result, which must not be replaced by an empty one."""
     rows = list(csv.DictReader(io.StringIO(text)))
-    return not rows or any((row.get(name) or "").strip() or name not in row for row in rows for name in RESULTS)
+    filled = any((row.get(name) or "").strip() for row in rows for name in RESULTS)
+    return not rows or filled or any(name not in row for row in rows for name in _FORCES)
 
 
 def has_voltage(plan: TestPlan) -> bool:

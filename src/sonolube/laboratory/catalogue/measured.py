@@ -227,7 +227,7 @@ def _rows(entry: CatalogueEntry, left_out: list[str]) -> list[list[str]]:
 
 def _levels(run: Run, part: int, left_out: list[str], lubricated: list[str]) -> Iterator[_Level]:
     """Friction at each dry setting of a part of a recording; of a part without friction a line, a lubricated one."""
-    recording = run.dataset(part)
+    recording = _with_force(run.dataset(part), run)
     conditions = set_conditions(recording)
     if not conditions:
         entry = catalogue_entry(run.folder)
@@ -236,13 +236,27 @@ def _levels(run: Run, part: int, left_out: list[str], lubricated: list[str]) -> 
         yield from _levels_of_protocol(run, recording)
         return
     if "friction_force" not in recording:
-        left_out.append(f"{run.folder.name}: part {part} is left out: it has no channel friction_force")
+        left_out.append(
+            f"{run.folder.name}: part {part} is left out: it has no channel friction_force, nor friction_coefficient"
+            " with a load"
+        )
         return
     if any(stretch.slides and stretch.lubricant for stretch in conditions):
         lubricated.append(str(part))
     for stretch in conditions:
         if stretch.slides and not stretch.lubricant:
             yield from _levels_of_stretch(run, recording, stretch)
+
+
+def _with_force(recording: "xr.Dataset", run: Run) -> "xr.Dataset":
+    """Recording with the friction force, from its coefficient and load where it has only these."""
+    if "friction_force" in recording or "friction_coefficient" not in recording:
+        return recording
+    load = recording["normal_load"] if "normal_load" in recording else catalogue_entry(run.folder).normal_load
+    if load is None:
+        return recording
+    force = recording["friction_coefficient"] * load
+    return recording.assign(friction_force=force.assign_attrs(units="N", long_name="Friction force"))
 
 
 def _levels_of_stretch(run: Run, recording: "xr.Dataset", stretch: SetConditions) -> Iterator[_Level]:

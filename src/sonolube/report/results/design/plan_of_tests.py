@@ -33,7 +33,7 @@ _POINT = (
     *("normal_load", "sliding_speed", "voltage_peak_to_peak", "vibration_amplitude"),
     *("power_to_supply", "charging_power", "dissipated_power", "mean_temperature_rise"),
 )
-_TO_FILL = ("Friction without (N)", "Friction with (N)", "Measured amplitude", "Remarks")
+_TO_FILL = ("Friction without (N or coefficient)", "Friction with", "Measured amplitude", "Remarks")
 _SETTINGS = ("Load (N)", "Speed (mm/s)", "Voltage (V)", "Amplitude (um)", "Vibration (s)")
 RUN_HEADS: Final = ("Run", "Block", "Pair", *_SETTINGS, *_TO_FILL)
 """Heads of the table of runs of a sheet to print."""
