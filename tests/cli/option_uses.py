@@ -862,6 +862,7 @@ MODES = {
         "lab check", (str(ROOT / "examples" / "lab" / "devices.toml"),), {"--protocol": "map_test"}, ("--connect",)
     ),
     "mapping": Mode("mapping", (OWN_RUNS,), {"--column": "friction_force [N]=-", "--decimal-sign": ","}),
+    "mapping of an export": Mode("mapping", ("FOLDER/bridge.csv",), {"--instrument": "bridge"}),
     "evidence list": Mode("evidence list", ()),
     "evidence check": Mode("evidence check", (OWN_TESTS,)),
     "evidence plot": Mode("evidence plot", (OWN_TESTS,)),
@@ -889,6 +890,7 @@ def write_inputs(place: Path) -> None:
     _write_posterior(place / "posterior.json")
     (place / "studies.csv").write_text("study,sliding_speed [mm/s],friction_reduction [%],source\nOwn,50,40,page 3\n")
     _table(place / "friction.csv", "time (s),friction_force (N)", time, force)
+    _table(place / "bridge.csv", "time (s),friction_force (uN)", time, 1e6 * force)
     _table(place / "other.csv", "time (s),friction_force (N)", time, 2 * force)
     pulse = np.exp(-(((0.8 * time % 1 - 0.5) / 0.03) ** 2)) + 0.4 * np.exp(-(((0.8 * time % 1 - 0.1) / 0.03) ** 2))
     _table(place / "hall.csv", "time (s),magnetic_flux_density (mT)", time, pulse)

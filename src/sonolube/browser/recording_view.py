@@ -17,8 +17,9 @@ from sonolube.browser.requests import Places
 from sonolube.browser.uploads import companion, named_uploads, uploaded
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.measurement.column_statements import FileColumn, mapping_of_statements, stated_file_columns
+from sonolube.measurement.export_columns import export_columns
 from sonolube.measurement.file_kind import file_kind
-from sonolube.measurement.recordings.mapping import RecordingMapping, mapping_toml, read_mapping
+from sonolube.measurement.recordings.mapping import RecordingMapping, TextLayout, mapping_toml, read_mapping
 from sonolube.measurement.recordings.pyramid import extremes, extremes_of_range
 from sonolube.measurement.recordings.reader import read_recording, recognised_mapping, recording_format
 from sonolube.measurement.run_table import run_text
@@ -82,10 +83,9 @@ def _described(path: Path, mapping: RecordingMapping | None) -> dict[str, Any]:
 
 def _columns(path: Path, mapping: RecordingMapping | None) -> list[FileColumn]:
     """Columns of a file: of a text by its first part, else of what its reader finds."""
-    if recording_format(path).name not in _TEXTS:
-        columns = recording_format(path).read(path, mapping=None).columns
-        labels, units = [column.label for column in columns], [column.unit or "" for column in columns]
-        return stated_file_columns(labels, units, [[f"{each:.6g}" for each in c.values[:3]] for c in columns], mapping)
+    has_own_layout = mapping is not None and mapping.text != TextLayout()
+    if recording_format(path).name not in _TEXTS or (file_kind(path) == "recording" and not has_own_layout):
+        return list(export_columns(path, mapping=mapping).columns)
     table, _ = run_text(_head(path), mapping)
     units = [*table.units, *[""] * (len(table.labels) - len(table.units))]
     cells = [[row[place] for _, row in table.rows if place < len(row)] for place in range(len(table.labels))]
@@ -104,7 +104,7 @@ def _head(path: Path) -> Path:
 def _layout(path: Path) -> RecordingMapping | None:
     """Mapping of the instrument that wrote a file, else one with the lines above its headings."""
     known = recognised_mapping(path)
-    if known is not None or recording_format(path).name not in _TEXTS:
+    if known is not None or file_kind(path) == "recording":
         return known
     table, _ = run_text(_head(path))
     empty = RecordingMapping(channels={})

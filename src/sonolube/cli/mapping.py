@@ -6,7 +6,10 @@ from typing import Any
 from sonolube.cli.console.options import ask, is_terminal
 from sonolube.cli.generated import command_of
 from sonolube.errors import InvalidInput
-from sonolube.measurement.run_headings import LEFT_OUT, meaning, samples, stated_columns
+from sonolube.measurement.column_statements import mapping_of_statements
+from sonolube.measurement.export_columns import export_columns
+from sonolube.measurement.file_kind import file_kind
+from sonolube.measurement.run_headings import LEFT_OUT, samples, stated_columns
 from sonolube.measurement.run_table import run_text
 from sonolube.tasks.table import task_named
 
@@ -19,8 +22,13 @@ def _completed(given: dict[str, Any], typed: Mapping[str, Any]) -> dict[str, Any
     if not is_terminal():
         return given
     path = given["file"]
-    table, _ = run_text(path)
     answers = dict(given.get("column") or {})
+    if file_kind(path) == "recording":
+        for each in export_columns(path).columns:
+            if each.is_asked and each.label and each.statement == LEFT_OUT and each.label not in answers:
+                answers[each.label] = _asked(each.label, list(each.cells))
+        return given | {"column": answers}
+    table, _ = run_text(path)
     for label, found in stated_columns(table, answers, path).items():
         if found is None:
             answers[label] = _asked(label, samples(table, label))
@@ -32,9 +40,10 @@ def _asked(label: str, cells: list[str]) -> str:
     holds = "; ".join(cells) or "empty cells"
     return ask(
         f"column {label!r}",
-        f"Column {label!r} ({holds}): quantity and unit, such as 'friction_force N', or - to leave it out",
+        f"Column {label!r} ({holds}): quantity and unit, such as 'friction_force N', or with a gain, such as"
+        " 'friction_force 2 N/V', or - to leave it out",
         LEFT_OUT,
-        lambda text: meaning(text, label),
+        lambda text: None if text.strip() == LEFT_OUT else mapping_of_statements({label: text}),
     )
 
 

@@ -7,7 +7,7 @@ from typing import Final
 
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.measurement.recordings.channels_and_parts import TIME_LABELS, name_and_unit
-from sonolube.measurement.recordings.mapping import AXIS_QUANTITIES, ChannelSource, RecordingMapping
+from sonolube.measurement.recordings.mapping import AXIS_QUANTITIES, ChannelSource, RecordingMapping, source_with_gain
 from sonolube.measurement.recordings.raw_table import numbered_labels
 from sonolube.measurement.run_columns import TEXT_NAMES
 from sonolube.measurement.run_headings import LEFT_OUT, STATES, RunHeading, fits, meaning, run_heading, state_column
@@ -98,7 +98,7 @@ def mapping_of_statements(
     Parameters
     ----------
     statements : mapping of str to str
-        Such as "friction_force N" by label, or "-" for a column that is left out.
+        Such as "friction_force N" by label, "friction_force 2 N/V" with a gain, or "-" for a column that is left out.
     mapping : RecordingMapping or None
         Whose calibrations, text layout and selection stay.
     rows : mapping of str to str
@@ -119,6 +119,10 @@ def mapping_of_statements(
     sources: dict[str, ChannelSource] = {}
     without = []
     for label, text in statements.items():
+        name, _, gain = text.strip().partition(" ")
+        if name in quantities() and (calibrated := source_with_gain(label, gain)) is not None:
+            sources[name] = calibrated
+            continue
         found = _meaning(text, label)
         if not isinstance(found, RunHeading):
             without += [label] if found == LEFT_OUT else []

@@ -94,7 +94,8 @@ def channel_values(recording: "xr.Dataset", name: str) -> Floats:
     if name not in recording.variables:
         names = [str(known) for known in recording.variables]
         file = recording.attrs.get("file_name", "the recording")
-        raise InvalidInput(f"{file} has no channel {name!r}; {suggestion(name, names) or 'it has ' + ', '.join(names)}")
+        known = suggestion(name, names) or "it has " + ", ".join(map(repr, names))
+        raise InvalidInput(f"{file} has no channel {name!r}; {known}; sonolube mapping states which column it is")
     values: Floats = recording[name].to_numpy()
     return values
 

@@ -24,6 +24,9 @@ _DAY = 86400.0  # s
 STATED = ("Start", "Increment")
 """Labels below which some oscilloscopes state the clock."""
 
+SEQUENCE = ("Sequence",)
+"""Texts in the line of units above numbers that count the rows."""
+
 
 def stamped_seconds(cells: Sequence[str]) -> Floats | None:
     """Seconds since the first of time stamps, with or without a date; None where a cell is none.

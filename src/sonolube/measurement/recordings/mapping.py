@@ -350,6 +350,11 @@ def _source(keys: dict[str, Any], name: str) -> ChannelSource:
     return ChannelSource(column=first, other_columns=tuple(label for label in others if label), **keys)
 
 
+def source_with_gain(column: str, text: str) -> ChannelSource | None:
+    """Source of a channel by a gain with units, such as "2 N/V"; None for another text."""
+    return ChannelSource(column=column, **_gain_with_units(text, None, column)) if _GAIN.fullmatch(text) else None
+
+
 _GAIN = re.compile(r"\s*([-+\d.eE]+)\s*([^/\d][^/]*|1)/([^/]+)")
 
 

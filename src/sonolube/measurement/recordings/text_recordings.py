@@ -89,6 +89,13 @@ class DelimitedText:
         )
 
 
+def export_table(path: Path) -> TextTable:
+    """First table of a text export as its reader finds it; of a large one its beginning."""
+    text = ends_of_large_text(path) or decoded_text(path, encoding="")[0]
+    text, layout, _ = with_found_layout(text, TextLayout())
+    return text_tables(text, layout, (), path)[0]
+
+
 def _large_table(path: Path, mapping: RecordingMapping | None) -> RawTable | None:
     """Columns of a large text whose rows are all alike; None for any other."""
     layout = mapping.text if mapping else TextLayout()
@@ -174,7 +181,7 @@ def _with_times(
     if (stated := stated_clock(table)) is not None:
         channels = [column for column in columns if not np.all(np.diff(column.values) == 1.0)]  # but the sequence
         return [replace(column, start=stated[0], interval=stated[1]) for column in channels], STATED
-    by_unit = [at for at, label in enumerate(table.labels) if _has_unit_of_time(label, table.units[at : at + 1])]
+    by_unit = [at for at, label in enumerate(table.labels) if has_unit_of_time(label, table.units[at : at + 1])]
     if len(by_unit) != 1:
         return columns, ()
     label = table.labels[by_unit[0]]
@@ -188,7 +195,7 @@ def _is_time(label: str) -> bool:
     return name_and_unit(label)[0] in TIME_LABELS
 
 
-def _has_unit_of_time(label: str, units: Sequence[str]) -> bool:
+def has_unit_of_time(label: str, units: Sequence[str]) -> bool:
     """Whether the unit of a column is one of time."""
     unit = next(iter(units), "") or name_and_unit(label)[1] or ""
     try:

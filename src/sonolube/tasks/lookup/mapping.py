@@ -6,9 +6,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from sonolube.errors import InvalidInput
+from sonolube.measurement.export_columns import export_columns, export_mapping, recording_text
+from sonolube.measurement.file_kind import file_kind
 from sonolube.measurement.measured_runs import read_runs, run_caveats, runs_text
 from sonolube.measurement.recordings.mapping import RecordingMapping, mapping_toml
-from sonolube.measurement.recordings.text_tables import TextTable
+from sonolube.measurement.recordings.reader import keep_recipe, read_recording
+from sonolube.measurement.recordings.text_tables import decoded_text
 from sonolube.measurement.run_headings import (
     LEFT_OUT,
     Meaning,
@@ -22,7 +25,7 @@ from sonolube.measurement.run_table import run_table, run_text
 from sonolube.tasks.answer import Answer, Block, Table, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import File, KeyValues, Parameter, file_stem
-from sonolube.tasks.task import shown, task
+from sonolube.tasks.task import refuse_unused, shown, task
 from sonolube.text.units import format_si
 from sonolube.vocabulary import quantities
 
@@ -43,6 +46,10 @@ def mapping(
     decimal_sign: Annotated[
         Literal[".", ","] | None, Parameter("Decimal sign, where each may as well stand between thousands.")
     ] = None,
+    instrument: Annotated[
+        str | None,
+        Parameter("Keep the mapping under this name: later exports of its labels are read by it unasked.", "NAME"),
+    ] = None,
 ) -> "MappingAnswer":
     """Quantity and unit of each column of a table, by headings and answers to questions, as a file for --mapping.
 
@@ -56,6 +63,10 @@ def mapping(
     {'quantity': 'sliding_speed', 'unit': 'mm/s'}
     """
     path = file_path(file)
+    if file_kind(path) == "recording":
+        refuse_unused("decimal_sign", because="for the export of a recording; it is for tables of runs")
+        return _of_export(path, column or {}, instrument, f"{file_stem(file)}-mapping.toml")
+    refuse_unused("instrument", because="for a table of runs; it is for exports of recordings")
     table, caveats = run_text(path)
     columns = {}
     for label, found in stated_columns(table, column or {}, path).items():
@@ -71,13 +82,46 @@ def mapping(
     known = mapping_of_columns(table, columns, decimal_sign=decimal_sign or "")
     runs, refusal = (None, "") if known.axis is not None else _runs(path, known)
     return MappingAnswer(
-        table=table,
+        rows=len(table.rows),
+        cells={label: "; ".join(samples(table, label)) for label in columns},
         columns=columns,
         known=known,
-        runs=runs,
+        read=runs,
         told=(*(run_caveats(runs) if runs is not None else caveats), *([refusal] if refusal else [])),
         name=f"{file_stem(file)}-mapping.toml",
     )
+
+
+def _of_export(path: Path, stated: Mapping[str, str], instrument: str | None, name: str) -> "MappingAnswer":
+    """Mapping of the export of a recording, kept as that of an instrument where it has a name."""
+    found = export_columns(path)
+    try:
+        known = export_mapping(path, found, stated)
+    except InvalidInput as failure:
+        if failure.key is None:
+            raise
+        raise InvalidInput(
+            f"{failure}: state what {failure.key!r} is by {shown('column')}, such as '{failure.key}=friction_force N',"
+            f" or '{failure.key}=friction_force 2 N/V' with the gain of a sensor"
+        ) from None
+    recording = read_recording(path, mapping=known)
+    told = str(recording.attrs.get("caveats", "")).splitlines()
+    if instrument is not None:
+        if not found.line:
+            raise InvalidInput(f"{path}: is no text, by whose labels later files could be recognised", key="instrument")
+        labels = decoded_text(path, encoding="")[0].splitlines()[found.line - 1]
+        told.append(f"kept as {keep_recipe(instrument, known, labels=labels)}")
+    channels = {source.column: (name, source) for name, source in known.channels.items()}
+    if known.axis is not None:
+        channels[known.axis.column] = (known.axis_quantity, known.axis)
+    columns: dict[str, Meaning] = {
+        each.label: RunHeading(meant[0], meant[1].unit or "") if (meant := channels.get(each.label)) else LEFT_OUT
+        for each in found.columns
+        if each.label
+    }
+    cells = {each.label: "; ".join(each.cells) for each in found.columns}
+    rows = next(iter(recording.sizes.values()))
+    return MappingAnswer(rows=rows, cells=cells, columns=columns, known=known, read=recording, told=told, name=name)
 
 
 def _runs(path: Path, known: RecordingMapping) -> "tuple[xr.Dataset | None, str]":
@@ -105,12 +149,13 @@ _MAX_SHOWN = 3  # first values of a column
 
 @answer
 class MappingAnswer(Answer):
-    """Quantity and unit of each column, the runs that follow, and the file of the mapping."""
+    """Quantity and unit of each column, the runs or the recording that follow, and the file of the mapping."""
 
-    table: TextTable
+    rows: int
+    cells: Mapping[str, str]
     columns: Mapping[str, Meaning]
     known: RecordingMapping
-    runs: "xr.Dataset | None"
+    read: "xr.Dataset | None"
     told: Sequence[str]
     name: str
 
@@ -119,16 +164,29 @@ class MappingAnswer(Answer):
         rows = []
         for label, found in self.columns.items():
             named = (found.name, found.unit) if isinstance(found, RunHeading) else (_words(found), "")
-            rows.append((label, *named, "; ".join(samples(self.table, label)), self._values(found)))
-        count = f"{len(self.columns)} columns, {len(self.table.rows)} rows"
-        found_runs = [] if self.runs is None else [runs_text(self.runs)]
-        return [count, Table(("column", "quantity", "unit", "cells", "read as"), rows), *found_runs]
+            rows.append((label, *named, self.cells[label], self._values(found)))
+        return [
+            f"{len(self.columns)} columns, {self.rows} rows",
+            Table(("column", "quantity", "unit", "cells", "read as"), rows),
+            *self._told(),
+        ]
+
+    def _told(self) -> list[str]:
+        """What the file was read as, in a line."""
+        if self.read is None:
+            return []
+        return [recording_text(self.read) if self.is_recording else runs_text(self.read)]
+
+    @property
+    def is_recording(self) -> bool:
+        """Whether the file is a recording, not a table of runs."""
+        return self.read is not None and "run" not in self.read.sizes
 
     def _values(self, found: Meaning) -> str:
         """First values of a column of runs in SI."""
-        if self.runs is None or not isinstance(found, RunHeading) or found.name not in self.runs:
+        if self.read is None or not isinstance(found, RunHeading) or found.name not in self.read.variables:
             return ""
-        values = self.runs[found.name].to_numpy()[:_MAX_SHOWN]
+        values = self.read[found.name].to_numpy()[:_MAX_SHOWN]
         if values.dtype.kind != "f":
             return "; ".join(map(str, values))
         unit = quantities()[found.name].unit
@@ -136,7 +194,10 @@ class MappingAnswer(Answer):
 
     def object(self) -> dict[str, Any]:
         """Quantity and unit by column, null where it is left out; number of runs and their friction ratios."""
-        ratios = [] if self.runs is None else (1 - self.runs["friction_reduction"].to_numpy()).tolist()
+        has_ratios = self.read is not None and not self.is_recording
+        ratios = (
+            (1 - self.read["friction_reduction"].to_numpy()).tolist() if self.read is not None and has_ratios else []
+        )
         return {
             "columns": {
                 label: {"quantity": found.name, "unit": found.unit} if isinstance(found, RunHeading) else None
