@@ -23,8 +23,8 @@ def _completed(given: dict[str, Any], typed: Mapping[str, Any]) -> dict[str, Any
         return given
     path = given["file"]
     answers = dict(given.get("column") or {})
-    if file_kind(path) == "recording":
-        for each in export_columns(path).columns:
+    if file_kind(path) == "recording" and (export := export_columns(path)).has_times:
+        for each in export.columns:
             if each.is_asked and each.label and each.statement == LEFT_OUT and each.label not in answers:
                 answers[each.label] = _asked(each.label, list(each.cells))
         return given | {"column": answers}

@@ -35,14 +35,17 @@ class ExportColumns:
         As their labels and units tell; the time may be a column of time stamps, which needs no statement.
     line : int
         Of the labels; 0 where the file is no text.
+    has_times : bool
+        Whether the file tells the times of its rows.
     """
 
     columns: tuple[FileColumn, ...]
     line: int = 0
+    has_times: bool = True
 
 
 def export_columns(path: Path, *, mapping: RecordingMapping | None = None) -> ExportColumns:
-    """Columns of an export of a recording, of a text by its cells, else of what its reader finds; stated by a mapping."""
+    """Columns of an export of a recording, of a text by its cells, else of what its reader finds."""
     reader = recording_format(path)
     if not isinstance(reader, DelimitedText):
         read = reader.read(path).columns
@@ -67,7 +70,8 @@ def export_columns(path: Path, *, mapping: RecordingMapping | None = None) -> Ex
         of_clock = [at for at, label in enumerate(table.labels) if label in STATED or units[at] in SEQUENCE]
         for at in of_clock:
             found[at] = replace(found[at], statement=LEFT_OUT, is_asked=False)
-    return ExportColumns(columns=tuple(found), line=table.line)
+    has_times = is_stated or clock is not None or len(times) == 1 or stated_clock(table) is not None
+    return ExportColumns(columns=tuple(found), line=table.line, has_times=has_times)
 
 
 def export_mapping(path: Path, found: ExportColumns, statements: Mapping[str, str]) -> RecordingMapping:

@@ -34,7 +34,7 @@ def test_columns_that_are_known_are_shown_with_what_is_read(name: str, tmp_path:
     shown = answer.text(line_length=None)
     assert "2000 samples in 10 s" in shown or "2000 samples in 9.99 s" in shown
     assert f"friction_force {np.mean(FORCE):.3g} N" in shown
-    (tmp_path / "mapping.toml").write_text(next(iter(answer.files().values())))  # type: ignore[arg-type]
+    (tmp_path / "mapping.toml").write_text(next(iter(answer.files().values())))
     recording = read_recording(path, mapping=tmp_path / "mapping.toml")
     assert recording["friction_force"].to_numpy() == approx(FORCE, rel=1e-5)
 

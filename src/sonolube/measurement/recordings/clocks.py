@@ -58,6 +58,8 @@ class RowClock:
 
 def clock_of_rows(table: TextTable) -> RowClock | None:
     """Times by time stamps, whose date may stand in a column of its own; None where no column has them."""
+    if not table.rows:
+        return None
     columns = {label: [_cell(cells, at) for _, cells in table.rows] for at, label in enumerate(table.labels)}
     stamps = {(label,): cells for label, cells in columns.items() if _STAMP.fullmatch(cells[0])}
     dates = [label for label, cells in columns.items() if _DATE.fullmatch(cells[0])]

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.export_columns import export_columns, export_mapping, recording_text
+from sonolube.measurement.export_columns import ExportColumns, export_columns, export_mapping, recording_text
 from sonolube.measurement.file_kind import file_kind
 from sonolube.measurement.measured_runs import read_runs, run_caveats, runs_text
 from sonolube.measurement.recordings.mapping import RecordingMapping, mapping_toml
@@ -63,9 +63,9 @@ def mapping(
     {'quantity': 'sliding_speed', 'unit': 'mm/s'}
     """
     path = file_path(file)
-    if file_kind(path) == "recording":
+    if file_kind(path) == "recording" and (export := export_columns(path)).has_times:
         refuse_unused("decimal_sign", because="for the export of a recording; it is for tables of runs")
-        return _of_export(path, column or {}, instrument, f"{file_stem(file)}-mapping.toml")
+        return _of_export(path, export, column or {}, instrument, f"{file_stem(file)}-mapping.toml")
     refuse_unused("instrument", because="for a table of runs; it is for exports of recordings")
     table, caveats = run_text(path)
     columns = {}
@@ -92,9 +92,10 @@ def mapping(
     )
 
 
-def _of_export(path: Path, stated: Mapping[str, str], instrument: str | None, name: str) -> "MappingAnswer":
+def _of_export(
+    path: Path, found: ExportColumns, stated: Mapping[str, str], instrument: str | None, name: str
+) -> "MappingAnswer":
     """Mapping of the export of a recording, kept as that of an instrument where it has a name."""
-    found = export_columns(path)
     try:
         known = export_mapping(path, found, stated)
     except InvalidInput as failure:
