@@ -58,12 +58,8 @@ def export_columns(path: Path, *, mapping: RecordingMapping | None = None) -> Ex
     found = stated_file_columns(table.labels, units, columns, mapping)
     clock = clock_of_rows(table)
     times = [at for at, label in enumerate(table.labels) if has_unit_of_time(label, units[at : at + 1])]
-    if (
-        mapping is None
-        and clock is None
-        and len(times) == 1
-        and not any(each.statement.startswith("time") for each in found)
-    ):
+    is_stated = any(each.statement.startswith("time") for each in found)
+    if mapping is None and clock is None and len(times) == 1 and not is_stated:
         (at,) = times
         found[at] = replace(found[at], statement=f"time {units[at]}".strip(), is_asked=False)
     if mapping is None and stated_clock(table) is not None:
