@@ -161,3 +161,13 @@ def test_digits_of_a_computed_spectrum_are_nothing_that_the_circuit_lacks() -> N
     assert 0 < found.residual_rms < 2e-5
     assert not any("does not describe" in caveat for caveat in found.caveats)
     assert parts_of(found) == set()
+
+
+def test_a_spectrum_whose_phase_has_no_noise_lacks_nothing() -> None:
+    z = impedance(LOW, **IDEAL)  # type: ignore[arg-type]
+    scatter = np.exp(0.004 * np.random.default_rng(8).standard_normal(LOW.size))
+    found = fit_circuit(ImpedanceSpectrum(frequency=LOW, impedance=z * scatter), branches=1)
+    assert found.residual_correlation < 3
+    assert found.caveats == ()
+    assert parts_of(found) == set()
+    assert holds(found, mechanical_quality_factor_1=900.0, coupling_factor_1=0.22)

@@ -10,6 +10,7 @@ from sonolube.checks import Complexes, Floats
 from sonolube.measurement.statistics.autocorrelation import statistical_inefficiency
 
 _ROUNDING = 1e-10  # residuals below which fits do not differ
+_NEGLIGIBLE = 0.05  # mean square of a series over the largest, below which its correlation does not count
 _EVALUATIONS = 60  # for each parameter
 _TERMS = (3, 4, 5, 6, 8, 10)  # of the rational approximations whose poles are tried
 _STEP = 1e-6  # of central differences, in a logarithm
@@ -138,13 +139,16 @@ def residual_inefficiency(fit: LogParameterFit, *, rows: int) -> float:
     Returns
     -------
     float
-        The largest one of all series.
+        The largest one of all series whose mean square is at least a twentieth of the largest: what a fit leaves of a
+        series that has hardly any noise is the error of the estimate, which is smooth.
 
     See Also
     --------
     statistical_inefficiency : of one series.
     """
-    series = fit.residuals.reshape(rows, -1)
+    every = fit.residuals.reshape(rows, -1)
+    squares = np.mean(every**2, axis=1)
+    series = every[squares >= _NEGLIGIBLE * squares.max()]
     return max(statistical_inefficiency(row) if np.ptp(row) > _ROUNDING else 1.0 for row in series)
 
 
