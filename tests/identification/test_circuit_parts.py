@@ -171,3 +171,14 @@ def test_a_spectrum_whose_phase_has_no_noise_lacks_nothing() -> None:
     assert found.caveats == ()
     assert parts_of(found) == set()
     assert holds(found, mechanical_quality_factor_1=900.0, coupling_factor_1=0.22)
+
+
+def test_loss_and_resistance_are_both_found_beside_two_modes() -> None:
+    f = np.linspace(28e3, 34e3, 201)
+    modes = ((30e3, 700.0, 0.3), (30.8e3, 250.0, 0.04))
+    z = impedance(f, c_0=2.2e-9, modes=modes, tan_d=0.01, resistance=6.0)
+    found = fit_circuit(noisy(f, z, noise=0.003, seed=3), branches=2)
+    assert parts_of(found) == {"loss_tangent", "series_resistance"}
+    assert found.circuit.loss_tangent == approx(0.01, rel=0.1)
+    assert found.circuit.series_resistance == approx(6.0, rel=0.2)
+    assert found.resonances.mechanical_quality_factor == approx([700.0, 250.0], rel=0.05)

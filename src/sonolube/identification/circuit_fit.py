@@ -270,13 +270,14 @@ def _fits_with_parts(
     Parts are added one by one, the one that explains most first, and resistance and inductance of the leads together
     where neither is enough by itself.
     """
-    fits = _fits_by_branches(spectrum, _first_fit(spectrum), limit)
+    fits = _fits_by_branches(spectrum, [_first_fit(spectrum)], limit)
     if requested is not None:
         parts = tuple(part for part in CIRCUIT_PARTS if part in requested and part not in spectrum.known)
         if not parts:
             return spectrum, fits
         with_parts = replace(spectrum, parts=parts)
-        return with_parts, _fits_by_branches(with_parts, _refitted(with_parts, fits[0], spectrum.parts), limit)
+        found = _with_more_parts(with_parts, fits, spectrum.parts, limit)
+        return with_parts, max(found, key=lambda each: _gain(with_parts, each[-1], over=fits[-1]))
     while trial := next(filter(None, (_extended(spectrum, fits, limit, step) for step in _steps(spectrum))), None):
         spectrum, fits = trial
     return spectrum, fits
@@ -301,10 +302,26 @@ def _extended(
             ranked.append((_gain(trial, refitted, over=fit), trial, fit))
     ranked = [each for each in ranked if each[0] > _LEAST_GAIN]
     for _, trial, _ in sorted(ranked, key=lambda each: -each[0]):
-        found = _fits_by_branches(trial, _refitted(trial, fits[0], spectrum.parts), limit)
-        if found and _is_determined(trial, found[-1]) and _gain(trial, found[-1], over=fits[-1]) > _LEAST_GAIN:
-            return trial, found
+        found = [
+            each
+            for each in _with_more_parts(trial, fits, spectrum.parts, limit)
+            if _is_determined(trial, each[-1]) and _gain(trial, each[-1], over=fits[-1]) > _LEAST_GAIN
+        ]
+        if found:
+            return trial, max(found, key=lambda each: _gain(trial, each[-1], over=fits[-1]))
     return None
+
+
+def _with_more_parts(
+    spectrum: _Spectrum, fits: list[LogParameterFit], parts: tuple[str, ...], limit: _Limit
+) -> list[list[LogParameterFit]]:
+    """Fits of a circuit with more parts than those given have, by branches: from one branch on, and from the last on.
+
+    Branches that stood for a part are gone by the first way; by the second a part is found that several modes hide.
+    """
+    own = [_refitted(spectrum, fit, parts) for fit in fits]
+    starts = [own[:1], own] if len(own) > 1 else [own]
+    return [_fits_by_branches(spectrum, start, limit) for start in starts]
 
 
 def _gain(spectrum: _Spectrum, fit: LogParameterFit, *, over: LogParameterFit) -> float:
@@ -345,9 +362,9 @@ def _first_fit(spectrum: _Spectrum) -> LogParameterFit:
     return fit
 
 
-def _fits_by_branches(spectrum: _Spectrum, first: LogParameterFit, limit: _Limit) -> list[LogParameterFit]:
-    """Fits with 1, 2, ... branches, from the first one up to the last accepted one."""
-    fits = [first]
+def _fits_by_branches(spectrum: _Spectrum, start: list[LogParameterFit], limit: _Limit) -> list[LogParameterFit]:
+    """Fits with 1, 2, ... branches, from those with the first ones up to the last accepted one."""
+    fits = [*start]
     while len(fits) < limit.branches:
         fit = _with_one_more_branch(spectrum, fits[-1].logarithms)
         if fit is None or not _is_accepted(spectrum, fit, fits[-1], by_criterion=limit.by_criterion):
