@@ -1,6 +1,7 @@
 """Bonded bodies, STEP files and impossible geometries."""
 
 import math
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -28,6 +29,7 @@ from sonolube.models.fem import (
     stepped_horn,
     translate,
 )
+from sonolube.models.fem.mesh.geometry import step_text
 from sonolube.models.fem.solver.assembly import tributary_areas
 
 R, r, L = 0.02, 0.01, 0.06
@@ -100,3 +102,13 @@ def test_a_step_file_that_ends_the_kernel_is_refused_and_the_program_goes_on(
     (tmp_path / "damaged.step").write_text("ISO-10303-21;")
     with raises(InvalidInput, match=message):
         read_step(tmp_path / "damaged.step")
+
+
+@mark.parametrize("place", [0, 5, 11])
+def test_a_step_file_whose_surface_lacks_an_edge_is_refused_before_it_is_meshed(tmp_path: Path, place: int) -> None:
+    text = step_text(block(length=0.04, width=0.01, thickness=0.01))
+    edges = re.findall(r"#\d+ = EDGE_CURVE", text)
+    path = tmp_path / "open.step"
+    path.write_text(text.replace(edges[place], edges[place].replace("EDGE_CURVE", "EDGX_CURVE"), 1), encoding="utf-8")
+    with raises(InvalidInput, match=r"open\.step: an edge of a face is missing, so that it is open"):
+        read_step(path)

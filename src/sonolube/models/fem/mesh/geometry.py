@@ -10,6 +10,7 @@ import os
 import re
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -185,10 +186,21 @@ def unguarded_step_geometry(path: Path) -> Geometry:
     solids = list(shape.solids)
     if not solids:
         raise InvalidInput(f"{path}: no closed solid in it; sew its surfaces into one before exporting")
+    if any(map(_has_open_face, solids)):
+        raise InvalidInput(f"{path}: an edge of a face is missing, so that it is open; export it anew")
     parts = {
         solid.name or f"body{k}": single_body(solid, solid.name or f"body{k}") for k, solid in enumerate(solids, 1)
     }
     return bond(parts) if len(parts) > 1 else next(iter(parts.values()))
+
+
+def _has_open_face(solid: Any) -> bool:
+    """Whether the edges about a face of a solid lead nowhere, which a mesher never fills: one lacks in the file."""
+    for wire in (wire for face in solid.faces for wire in face.wires):
+        ends = Counter(hash(vertex) for edge in wire.edges for vertex in edge.vertices)
+        if any(count % 2 for count in ends.values()):
+            return True
+    return False
 
 
 def step_text(geometry: Geometry) -> str:
