@@ -88,12 +88,18 @@ def detect_format(formats: Sequence[FormatT], head: bytes, path: Path) -> Format
             return known
     named = next((known for known in specific if path.suffix.lower() in known.suffixes), None)
     if named is not None:
-        with refuse_unreadable(path):
-            size = path.stat().st_size
-        if size > _LARGEST_WITHOUT_SIGNATURE and not fallback.recognises(head, path):
-            raise InvalidInput(f"{path}: has {size:,} bytes, but does not begin as {named.name} does; copy it again")
+        if len(head) >= HEAD_SIZE and not fallback.recognises(head, path):
+            _refuse_large(path, named.name)
         return named
     return fallback if fallback.recognises(head, path) else None
+
+
+def _refuse_large(path: Path, format_name: str) -> None:
+    """Refuse a large file whose format is known by its suffix alone."""
+    with refuse_unreadable(path):
+        size = path.stat().st_size
+    if size > _LARGEST_WITHOUT_SIGNATURE:
+        raise InvalidInput(f"{path}: has {size:,} bytes, but does not begin as {format_name} does; copy it again")
 
 
 def first_lines(head: bytes) -> list[str]:
