@@ -11,7 +11,7 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_runs import read_runs, run_caveats
 from sonolube.measurement.recordings.mapping import mapping_toml, read_mapping
 from sonolube.measurement.run_headings import likely_statements, meaning, meaning_at_stake, run_heading
-from sonolube.measurement.run_numbers import cell_number
+from sonolube.measurement.run_numbers import cell_number, decimal_sign_of
 from sonolube.measurement.run_table import run_table
 from sonolube.text.units import to_si
 from sonolube.vocabulary import quantities
@@ -147,6 +147,22 @@ def test_numbers_have_the_worth_of_their_last_digit(cell: str, sign: str, value:
     found = cell_number(cell, sign=sign)
     assert found is not None
     assert (found.value, found.digit) == approx((value, digit))
+
+
+@pytest.mark.parametrize(
+    ("cells", "sign"),
+    [
+        (["5,000", "200.0"], "."),
+        (["5.000", "0,52"], ","),
+        (["1.000.000", "5.000"], ","),
+        (["1,000.125"], "."),
+        (["0.125", "5"], "."),
+        (["1.2.3"], "."),
+        ([], "."),
+    ],
+)
+def test_the_decimal_sign_is_that_of_numbers_that_cannot_have_thousands(cells: list[str], sign: str) -> None:
+    assert decimal_sign_of(cells, Path("runs.csv")) == sign
 
 
 @pytest.mark.parametrize("cell", ["", "x", "<0.1", "2.1.3", "1 2", "12.03.2026", "0.2 ± x"])

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from math import sqrt
 from pathlib import Path
 from typing import Final
@@ -21,7 +22,9 @@ _WITH_MORE: Final = re.compile(
     rf"\(?\s*(?P<number>{_NUMBER})(?:\s*(?:±|\+\s?/?\s?-)\s*(?P<error>{_NUMBER})|\((?P<last>\d{{1,3}})\))?\s*\)?\s*"
     r"(?P<unit>[%‰°µμA-Za-z][^;]{0,19})?"
 )
-_THOUSANDS: Final = re.compile(r"[-+]?[1-9]\d{0,2}([.,])\d{3}(?:\1\d{3})*")
+_LONGEST_EXPONENT: Final = 4  # characters, of a number that any run has
+_THOUSANDS: Final = re.compile(r"[-+]?[1-9]\d{0,2}[.,]\d{3}")
+_TWO_MARKS: Final = re.compile(r"[-+]?\d{1,3}([.,])\d{3}(?:\1\d{3})+")
 _MARKED: Final = re.compile(r"[-+]?\d*[.,]\d*(?:[eE][-+]?\d+)?")
 
 
@@ -46,6 +49,7 @@ class CellNumber:
     unit: str = ""
 
 
+@lru_cache(maxsize=4096)  # cells of a setting are often the same
 def cell_number(cell: str, *, sign: str) -> CellNumber | None:
     """Number of a cell with the decimal sign of its table; None where it holds none."""
     plain = _plain_number(cell, sign)
@@ -91,8 +95,9 @@ def _digit(text: str, sign: str) -> float:
     """Worth of the last digit of a number; zero for what is none, such as nan."""
     joined = _without_thousands(text, sign) or text.strip()
     mantissa, _, exponent = joined.lower().partition("e")
-    decimals = len(mantissa.partition(sign)[2])
-    return 10.0 ** (int(exponent or 0) - decimals) if _PLAIN.fullmatch(joined) else 0.0
+    if not _PLAIN.fullmatch(joined) or len(exponent) > _LONGEST_EXPONENT:
+        return 0.0
+    return float(f"1e{int(exponent or 0) - len(mantissa.partition(sign)[2])}")
 
 
 def decimal_sign_of(cells: Sequence[str], path: Path) -> str:
@@ -109,10 +114,12 @@ def decimal_sign_of(cells: Sequence[str], path: Path) -> str:
     both = next((number for number in marked if "," in number and "." in number), None)
     if both is not None:
         return max(",.", key=both.rfind)
-    if marked:
-        small, large = float(marked[0].replace(",", ".")), re.sub(r"\D", "", marked[0])
+    if twice := next((found[1] for number in marked if (found := _TWO_MARKS.fullmatch(number))), None):
+        return {".": ",", ",": "."}[twice]
+    if first := next(filter(_THOUSANDS.fullmatch, marked), None):
+        small, large = float(first.replace(",", ".")), re.sub(r"\D", "", first)
         raise InvalidInput(
-            f"{path}: {marked[0]!r} may be {small:g} or {large}: each number with a mark has three digits behind it;"
+            f"{path}: {first!r} may be {small:g} or {large}: each number with a mark has three digits behind it;"
             " state the decimal sign: sonolube mapping FILE --decimal-sign ',' (or '.'), or write one of them with"
             " other digits"
         )

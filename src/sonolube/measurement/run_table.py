@@ -387,12 +387,10 @@ class _Cells:
         if not cell or cell in self.missing:
             return _NO_NUMBER
         number = cell_number(cell, sign=self.sign)
-        shown = f"{self.path}: {self.place} {line}: {column.shown} {_quoted(cell)}"
-        if number is None:
-            raise InvalidInput(f"{shown} is no number{_sign_hint(cell, self.sign)}")
-        if not abs(number.value) <= _LARGEST:
-            raise InvalidInput(f"{shown} lies beyond any run")
-        return number
+        if number is not None and abs(number.value) <= _LARGEST:
+            return number
+        reason = f"is no number{_sign_hint(cell, self.sign)}" if number is None else "lies beyond any run"
+        raise InvalidInput(f"{self.path}: {self.place} {line}: {column.shown} {_quoted(cell)} {reason}")
 
 
 def _word(cells: Sequence[str], column: _Column) -> str:
