@@ -30,9 +30,9 @@ def test_every_column_has_its_quantity_and_first_cells_or_is_left_out(tmp_path: 
     head, found = answer.blocks()
     assert head == "3 columns, 2 rows"
     assert isinstance(found, Table)
-    assert list(found.heads) == ["column", "quantity", "unit", "cells"]
-    assert found.rows[0] == ("v [mm/s]", "sliding_speed", "mm/s", "20; 40")
-    assert found.rows[2] == ("note", "left out", "", "a; b")
+    assert list(found.heads) == ["column", "quantity", "unit", "cells", "read as"]
+    assert found.rows[0] == ("v [mm/s]", "sliding_speed", "mm/s", "20; 40", "")
+    assert found.rows[2] == ("note", "left out", "", "a; b", "")
     assert answer.object()["columns"] == {
         "v [mm/s]": {"quantity": "sliding_speed", "unit": "mm/s"}, "F": {"quantity": "friction_force", "unit": "N"},
         "note": None,
