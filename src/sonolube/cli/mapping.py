@@ -1,14 +1,14 @@
 """Command `mapping`: the task with a question on a terminal for each column that its heading does not tell."""
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from sonolube.cli.console.options import ask, is_terminal
 from sonolube.cli.generated import command_of
 from sonolube.errors import InvalidInput
 from sonolube.measurement.column_statements import mapping_of_statements
-from sonolube.measurement.export_columns import export_columns
-from sonolube.measurement.file_kind import file_kind
+from sonolube.measurement.export_columns import export_with_times
 from sonolube.measurement.run_headings import LEFT_OUT, samples, stated_columns
 from sonolube.measurement.run_table import run_text
 from sonolube.tasks.table import task_named
@@ -23,7 +23,7 @@ def _completed(given: dict[str, Any], typed: Mapping[str, Any]) -> dict[str, Any
         return given
     path = given["file"]
     answers = dict(given.get("column") or {})
-    if file_kind(path) == "recording" and (export := export_columns(path)).has_times:
+    if (export := export_with_times(Path(path))) is not None:
         for each in export.columns:
             if each.is_asked and each.label and each.statement == LEFT_OUT and each.label not in answers:
                 answers[each.label] = _asked(each.label, list(each.cells))

@@ -9,6 +9,7 @@ import numpy as np
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.column_statements import FileColumn, mapping_of_statements, stated_file_columns
+from sonolube.measurement.file_kind import file_kind
 from sonolube.measurement.recordings.channels_and_parts import FRICTION
 from sonolube.measurement.recordings.clocks import SEQUENCE, STATED, clock_of_rows, stated_clock
 from sonolube.measurement.recordings.mapping import RecordingMapping
@@ -68,6 +69,15 @@ def export_columns(path: Path, *, mapping: RecordingMapping | None = None) -> Ex
             found[at] = replace(found[at], statement=LEFT_OUT, is_asked=False)
     has_times = is_stated or clock is not None or len(times) == 1 or stated_clock(table) is not None
     return ExportColumns(columns=tuple(found), line=table.line, has_times=has_times)
+
+
+def export_with_times(path: Path) -> ExportColumns | None:
+    """Columns of a file that holds a recording with the times of its rows; None for a table of runs or another file."""
+    try:
+        found = export_columns(path) if file_kind(path) == "recording" else None
+    except InvalidInput:
+        return None
+    return found if found is not None and found.has_times else None
 
 
 def export_mapping(path: Path, found: ExportColumns, statements: Mapping[str, str]) -> RecordingMapping:

@@ -185,7 +185,13 @@ def test_the_sheet_has_empty_cells_limits_and_what_a_report_states(sonolube: Pro
     page = (tmp_path / "power_map-plan.html").read_text(encoding="utf-8")
     assert page.count("<td></td>") >= 4 * len(answer["runs"])
     assert "@page { size: A4" in page
-    for text in ("ASTM G99", "Atmosphere", "Departures from procedure", "stainless_steel_304", "Friction with (N)"):
+    for text in (
+        "ASTM G99",
+        "Atmosphere",
+        "Departures from procedure",
+        "stainless_steel_304",
+        "Friction without (N or coefficient)",
+    ):
         assert text in page
 
 

@@ -200,7 +200,7 @@ def test_an_actuator_of_an_own_catalogue_gives_both_a_meaning(monkeypatch: Monke
             optimise._refuse_unused(actuators, "own.toml", bolt=None, same_objective=False)
 
 
-INPUTS: Any = SimpleNamespace(sliding_speed=0.06, voltage_peak_to_peak=20.0, amplitude=SimpleNamespace(value=2e-6))
+INPUTS: Any = SimpleNamespace(sliding_speed=0.06, amplitude_per_volt=1e-7, amplitude=SimpleNamespace(value=2e-6))
 
 
 def factors(**more: Any) -> Any:
@@ -223,8 +223,11 @@ def test_factors_of_a_plan_have_counts_of_their_own_and_voltages_scale_the_ampli
     assert factors(vibration="1:2um").vibration_amplitude.size == 5
     with raises(InvalidInput, match=r"^vibration and voltage both set the amplitude; give one$"):
         factors(vibration="1um", voltage="3V")
-    bare: Any = SimpleNamespace(**(vars(INPUTS) | {"voltage_peak_to_peak": None}))
-    with raises(InvalidInput, match=r"^voltage needs the rig's drive\.voltage_peak_to_peak to scale by"):
+    bare: Any = SimpleNamespace(**(vars(INPUTS) | {"amplitude_per_volt": None}))
+    with raises(
+        InvalidInput,
+        match=r"^voltage needs the rig's drive\.voltage_peak_to_peak or vibration\.calibration to scale by",
+    ):
         plan._amplitudes(bare, None, "3V")
 
 

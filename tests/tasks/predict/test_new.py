@@ -73,7 +73,7 @@ def test_the_dataset_has_the_spread_of_what_nobody_measured() -> None:
         ({"load": -5.0}, r"^load -5\.0 N must be positive"),
         ({"load": float("nan")}, "^load 'nan N' is not a number"),
         ({"speed": "60 rpm"}, "^speed 60 rpm is a rotational speed: give track_radius or track_diameter too"),
-        ({"amplitude": None}, "^give amplitude, or actuator with its voltage"),
+        ({"amplitude": None}, "^give amplitude, calibration, or actuator with its voltage"),
         ({"voltage": 40.0}, "^actuator and voltage belong together"),
         ({"actuator": "sa050510", "voltage": 40.0}, "^give either amplitude or actuator, got both"),
         ({"decay_length": 1e-6, "stiffness": 1e6}, "^give either decay_length or stiffness, got both"),

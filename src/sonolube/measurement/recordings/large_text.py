@@ -26,6 +26,8 @@ def ends_of_large_text(path: Path) -> str | None:
         head = stream.read(_LOOKED_AT)
         stream.seek(size // 2)
         middle = stream.read(_LOOKED_AT)
+    if b"\n" not in head:
+        return None
     ends = head.rpartition(b"\n")[0] + b"\n" + middle.partition(b"\n")[2].rpartition(b"\n")[0] + b"\n"
     try:
         return ends.decode("utf-8-sig")

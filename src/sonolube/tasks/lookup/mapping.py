@@ -6,8 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.export_columns import ExportColumns, export_columns, export_mapping, recording_text
-from sonolube.measurement.file_kind import file_kind
+from sonolube.measurement.export_columns import ExportColumns, export_mapping, export_with_times, recording_text
 from sonolube.measurement.measured_runs import read_runs, run_caveats, runs_text
 from sonolube.measurement.recordings.mapping import RecordingMapping, mapping_toml
 from sonolube.measurement.recordings.reader import keep_recipe, read_recording
@@ -63,7 +62,7 @@ def mapping(
     {'quantity': 'sliding_speed', 'unit': 'mm/s'}
     """
     path = file_path(file)
-    if file_kind(path) == "recording" and (export := export_columns(path)).has_times:
+    if (export := export_with_times(path)) is not None:
         refuse_unused("decimal_sign", because="for the export of a recording; it is for tables of runs")
         return _of_export(path, export, column or {}, instrument, f"{file_stem(file)}-mapping.toml")
     refuse_unused("instrument", because="for a table of runs; it is for exports of recordings")

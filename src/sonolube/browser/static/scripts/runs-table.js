@@ -8,9 +8,9 @@ import {save} from './take-away.js';
 /** @import {Texts} from './state.js' */
 
 /**
- * @typedef {{csv: string, added: number, runs: number, used: boolean[], switched_off: number, names: string[], headings:
- *   string[], rows: string[][], choices: [string, string][]}} Sheet table of own runs; choices are columns that it may
- *   have, with their headings
+ * @typedef {{csv: string, added: number, runs: number, used: boolean[], switched_off: number, names: string[],
+ *   headings: string[], rows: string[][], choices: [string, string][]}} Sheet
+ * Table of own runs; choices are columns that it may have, with their headings.
  */
 
 const MOST = 200; // rows that are shown
@@ -28,7 +28,9 @@ const FEWEST = 3; // columns of a table that needs no others
 
 /** Number of runs in words. @param {Sheet} sheet @returns {string} */
 export const counted = ({runs, switched_off}) =>
-  `${runs} own ${runs === 1 ? 'run' : 'runs'}${switched_off ? `, ${switched_off} of them switched off` : ''}.`;
+  `${runs} own ${runs === 1 ? 'run' : 'runs'}${switched_off ? `, ${switched_off} of them switched off` : ''}.${
+    runs > MOST ? ` The table shows the first ${MOST}.` : ''
+  }`;
 
 /** Heading of a column. @param {Sheet|undefined} sheet @param {string} name @returns {string} */
 const headingOf = (sheet, name) => sheet?.headings[sheet.names.indexOf(name)] ?? name;
@@ -161,7 +163,7 @@ export function RunsTable({view, disagreeing = []}) {
       </div>`
     }
     <p class="hint" role="status" data-test="runs-note">
-      ${note || (sheet?.rows.length ? counted(sheet) + (sheet.runs > MOST ? ` The first ${MOST} are shown.` : '') : EMPTY)}
+      ${note || (sheet?.rows.length ? counted(sheet) : EMPTY)}
     </p>
     <p class="row">
       <textarea
