@@ -176,3 +176,10 @@ def test_a_missing_column_is_named_with_its_unit(tmp_path: Path) -> None:
     runs = read_runs(table(tmp_path, "friction_ratio\n0.5\n"))
     with pytest.raises(InvalidInput, match=r"need a column actuator_power: add actuator_power \[W\]"):
         with_columns(runs, "actuator_power")
+
+
+def test_friction_without_vibration_serves_its_own_speed_also_within_one_run(tmp_path: Path) -> None:
+    path = tmp_path / "runs.csv"
+    rows = ["day 1,20,0,1.0", "day 1,20,2,0.4", "day 1,60,0,2.0", "day 1,60,2,1.0", "day 2,60,0,4.0", "day 2,60,2,1.0"]
+    path.write_text("\n".join(["run,sliding_speed [mm/s],vibration_amplitude [um],friction_force [N]", *rows]))
+    assert read_runs(path)["friction_reduction"].to_numpy() == approx([0.6, 0.5, 0.75])

@@ -248,7 +248,7 @@ def _refer(
 ) -> None:
     """Add the friction without vibration of rows that hold it to the others, of which they are no runs.
 
-    A row serves those of its run where it names one that they name too, else those of its speed and load.
+    A row serves those of its speed and load; those of the run that it names, where there are such.
     """
     count, force = without.size, columns[name]
     unknown = np.full(count, np.nan)
@@ -259,9 +259,9 @@ def _refer(
     of_digits = digits.get(f"intrinsic_{name}", unknown).copy()
     names = np.array(runs) if runs is not None else np.full(count, "")
     for row in np.flatnonzero(np.isnan(intrinsic) & ~without):
-        same = without & (names == names[row]) & (names != "")
-        if not same.any():
-            same = without & np.all(np.isclose(settings, settings[row], rtol=1e-2, equal_nan=True), axis=1)
+        alike = without & np.all(np.isclose(settings, settings[row], rtol=1e-2, equal_nan=True), axis=1)
+        of_run = alike & (names == names[row]) & (names != "")
+        same = of_run if of_run.any() else alike
         if same.any():
             intrinsic[row] = np.mean(force[same])
             of_intrinsic[row] = np.sqrt(np.sum(deviation[same] ** 2)) / np.count_nonzero(same)
