@@ -52,7 +52,7 @@ def test_rows_are_added_once_and_repeats_of_one_table_stay(german: Path) -> None
     first, added = joined(RunSheet(), read_sheet(german, source="a"))
     assert added == len(first.rows) == 3
     again, added = joined(first, read_sheet(german, source="a"))
-    assert (again, added) == (first, 0)
+    assert (len(again.rows), added) == (3, 0)
     switched, added = joined(with_switch(first, row=0, is_used=False), read_sheet(german, source="a"))
     assert (len(switched.rows), added) == (3, 0)
     other, added = joined(first, read_sheet(german, source="b"))
