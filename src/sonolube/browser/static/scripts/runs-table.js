@@ -1,9 +1,9 @@
 /** Table of own runs: rows that are typed, pasted, switched off and removed; each change is a new table of the view. */
-import {html, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
+import {html, useState} from '../vendor/htm-preact-3.1.1.js';
 import {ask, useReply} from './api.js';
 import {NOTHING, uploadOf} from './fields.js';
 import {Button, Refusal, Select} from './parts.js';
-import {change} from './state.js';
+import {change, entryNow} from './state.js';
 import {save} from './take-away.js';
 /** @import {Texts} from './state.js' */
 
@@ -24,6 +24,8 @@ const FIRST = [
   'friction_force',
   'intrinsic_friction_force',
 ];
+/** The last change that was asked for, after which the next one begins. */
+let turn = Promise.resolve('');
 const FEWEST = 3; // columns of a table that needs no others
 
 /** Number of runs in words. @param {Sheet} sheet @returns {string} */
@@ -38,15 +40,12 @@ const headingOf = (sheet, name) => sheet?.headings[sheet.names.indexOf(name)] ??
 /**
  * Make a table the one of the view; one without a row leaves it out.
  * @param {Sheet} sheet
- * @param {(text: string|null) => void} [onTaken] called with the entry of the view before it changes
  * @returns {Promise<string>} why it was not taken
  */
-export async function takeSheet(sheet, onTaken) {
+export async function takeSheet(sheet) {
   const kept = sheet.csv ? await ask('api/uploads', {raw: new Blob([sheet.csv])}) : null;
   if (kept?.failure) return kept.failure.text;
-  const runs = kept && `${kept.content.upload} own-runs.csv`;
-  onTaken?.(runs);
-  change({view: {runs}});
+  change({view: {runs: kept && `${kept.content.upload} own-runs.csv`}});
   return '';
 }
 
@@ -76,25 +75,25 @@ export function RunsTable({view, disagreeing = []}) {
   const [further, setFurther] = useState(/** @type {string[]} */ ([]));
   const runs = view.runs && uploadOf(view.runs);
   const {content, failure} = useReply('own-runs', 'api/own-runs', runs ? {runs} : NOTHING);
-  const latest = useRef(/** @type {string|null|undefined} */ (view.runs));
-  latest.current = view.runs;
-  const turn = useRef(Promise.resolve(''));
   /** Change the table as it is after all changes before; why that was refused. @param {object} action */
   const act = (action) => {
-    turn.current = turn.current.then(async () => {
-      const before = latest.current && uploadOf(latest.current);
-      const reply = await ask('api/own-runs', {body: {...(before && {runs: before}), ...action}});
-      const refused = reply.failure?.text ?? (await takeSheet(reply.content, (text) => (latest.current = text)));
+    turn = turn.then(async () => {
+      const before = entryNow('runs');
+      const reply = await ask('api/own-runs', {body: {...(before && {runs: uploadOf(before)}), ...action}});
+      const refused = reply.failure?.text ?? (await takeSheet(reply.content));
       const wasKnown = 'text' in action && !refused && !reply.content.added;
       setNote(refused || (wasKnown ? 'These rows are in the table already.' : ''));
       return refused;
     });
-    return turn.current;
+    return turn;
   };
   /** @type {Sheet|undefined} */
   const sheet = content;
   const own = sheet?.names.filter((name) => name !== SWITCH) ?? [];
-  const names = [...new Set([...own, ...(own.length < FEWEST ? FIRST : []), ...further])];
+  const places = new Map(sheet?.choices.map(([name], place) => [name, place]));
+  const names = [...new Set([...own, ...(own.length < FEWEST ? FIRST : []), ...further])].sort(
+    (one, other) => (places.get(one) ?? Infinity) - (places.get(other) ?? Infinity) || 0,
+  ); // a cell in which one types stays where it is
   const headings = new Map([
     ...(sheet?.choices ?? []),
     ...own.map((name) => /** @type {[string, string]} */ ([name, headingOf(sheet, name)])),

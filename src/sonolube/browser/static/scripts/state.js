@@ -272,3 +272,6 @@ export function useApp() {
   useListening(listeners);
   return {state, isMoving, canUndo: past.length > 0, canRedo: future.length > 0};
 }
+
+/** Entry of the view as it is now, whatever was drawn last. @param {string} name @returns {string|undefined} */
+export const entryNow = (name) => state.view[name];
