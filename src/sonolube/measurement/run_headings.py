@@ -12,7 +12,7 @@ from typing import Final
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping, Selection, TextLayout
-from sonolube.measurement.recordings.raw_table import column_of_label, numbered_labels, si_conversion
+from sonolube.measurement.recordings.raw_table import column_of_label, is_unit_of, numbered_labels
 from sonolube.measurement.recordings.text_tables import NumberedCells, TextTable
 from sonolube.measurement.run_columns import RUN_COLUMNS, TEXT_NAMES
 from sonolube.measurement.run_numbers import cell_number
@@ -124,16 +124,7 @@ def fits(found: RunHeading) -> bool:
     if found.name in TEXT_NAMES:
         return not found.unit
     unit = quantities()[found.name].unit
-    return _is_unit_of(found.unit, unit) if found.unit else not unit
-
-
-def _is_unit_of(written: str, unit: str) -> bool:
-    """Whether a written unit is of the kind of an SI unit."""
-    try:
-        si_conversion(written, unit=unit, name="")
-    except InvalidInput:
-        return False
-    return True
+    return is_unit_of(found.unit, unit) if found.unit else not unit
 
 
 def meaning_at_stake(label: str) -> str:
@@ -149,7 +140,7 @@ def meaning_at_stake(label: str) -> str:
     if _SETTING.search(text) or any(f" {words} " in f" {text} " for words in _settings()):
         return "a setting of the run"
     written = [unit for _, unit in _splits(label[:_LONGEST]) if unit]
-    kinds = (kind for unit, kind in _OF_UNIT.items() if any(_is_unit_of(each, unit) for each in written))
+    kinds = (kind for unit, kind in _OF_UNIT.items() if any(is_unit_of(each, unit) for each in written))
     return next(kinds, "")
 
 
@@ -162,7 +153,7 @@ def likely_statements(label: str) -> list[str]:
     text = _plain(label)
     written = [unit for _, unit in _splits(label[:_LONGEST]) if unit]
     if "weite" in text:
-        unit = next((each for each in written if _is_unit_of(each, "m")), "um")
+        unit = next((each for each in written if is_unit_of(each, "m")), "um")
         return [f"vibration_amplitude {unit} pp", f"vibration_amplitude {unit}"]
     scores: list[tuple[float, str]] = []
     for column in RUN_COLUMNS:
@@ -170,7 +161,7 @@ def likely_statements(label: str) -> list[str]:
             continue
         known = quantities()[column.name]
         unit = next(
-            (each for each in written if known.unit and each not in _PARTS and _is_unit_of(each, known.unit)), ""
+            (each for each in written if known.unit and each not in _PARTS and is_unit_of(each, known.unit)), ""
         )
         names = [_plain(each) for each in (column.name, *known.also)]
         likeness = max(difflib.SequenceMatcher(None, text, each).ratio() for each in names)

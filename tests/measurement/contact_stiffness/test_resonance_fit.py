@@ -88,7 +88,7 @@ def test_an_impedance_is_read_as_the_charge_that_its_voltage_moves(tmp_path: Pat
     ("text", "message"),
     [
         ("frequency (Hz),velocity (mm/s),phase\n1,2,3\n", "line 1: the phase needs a unit"),
-        ("frequency (Hz),velocity (mm/s)\n1,2\n2,x\n", "line 3: column 2 is not a finite number"),
+        ("frequency (Hz),velocity (mm/s)\n1,2\n2,x\n", "line 3: 'x' is not a finite number"),
         ("frequency (Hz),velocity (mm/s)\n1,2\n2,3\n", "at least 12 points, got 2"),
         ("frequency (Hz),colour\n1,2\n2,3\n", "names no columns of frequency and impedance"),
     ],
@@ -98,3 +98,14 @@ def test_a_table_that_is_no_spectrum_is_refused_with_its_reason(tmp_path: Path, 
     path.write_text(text)
     with raises(InvalidInput, match=message):
         read_resonance_spectrum(path)
+
+
+def test_a_table_of_vibration_with_units_in_a_row_of_their_own_and_decimal_commas_is_read(tmp_path: Path) -> None:
+    # 5 um at 100 Hz; phases of 90 degrees turn the response to +i.
+    rows = [f"{100 + k},0;5,0;90,0" for k in range(12)]
+    path = tmp_path / "table.txt"
+    path.write_bytes("\n".join(["Prüfstand A", "Frequency;Displacement;Phase", "Hz;µm;°", *rows]).encode("cp1252"))
+    spectrum = read_resonance_spectrum(path)
+    assert spectrum.frequency == approx(100 + np.arange(12.0))
+    assert spectrum.response == approx(np.full(12, 5j), abs=1e-12)
+    assert "read as Windows-1252" in spectrum.caveats[0]

@@ -10,16 +10,17 @@ import numpy as np
 
 from sonolube.checks import Complexes, Floats, require_finite_complex, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.impedance.headings import ColumnHeading, parse_heading
-from sonolube.measurement.impedance.spectrum import passive_spectrum, read_impedance, sweep_bytes
-from sonolube.measurement.measured_files import detected_decimal_sign, parse_number, require_points
+from sonolube.measurement.impedance.headings import ColumnHeading, is_unit, parse_heading
+from sonolube.measurement.impedance.spectrum import passive_spectrum, read_impedance, sweep_bytes, text_lines
+from sonolube.measurement.measured_files import require_points
+from sonolube.measurement.recordings.headed_tables import finite_numbers, headed_table
+from sonolube.measurement.recordings.raw_table import is_unit_of
+from sonolube.measurement.recordings.text_tables import decoded_content
 from sonolube.measurement.time_series import require_equal_length
 
 _ORDERS = {"displacement": 0, "amplitude": 0, "receptance": 0, "velocity": 1, "mobility": 1, "acceleration": 2}
 _VIBRATION = re.compile(rf"\W*({'|'.join(_ORDERS)})\b", re.IGNORECASE)
-_COMMENTS = ("#", "!", "%")
 _MIN_POINTS = 12
-_HEAD_LINES = 64  # among which the headings of a table of vibration stand
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -142,18 +143,18 @@ def read_resonance_spectrum(path: Path, *, sweep: str | None = None) -> Resonanc
         Naming the file, if it has no such sweep.
     """
     content = sweep_bytes(path)
-    table = _vibration_table(path, content.decode("utf-8-sig", errors="replace").splitlines())
+    table = _vibration_table(path, content)
     if table is None:
         return _of_impedance(path, sweep)
     if sweep is not None:
         raise InvalidInput(f"{path}: is a table of one spectrum of vibration; leave sweep {sweep!r} out")
-    frequency, response, quantity = table
+    frequency, response, quantity, caveats = table
     order = np.argsort(frequency, kind="stable")
     try:
         found = vibration_spectrum(frequency=frequency[order], response=response[order], quantity=quantity)
     except InvalidInput as refusal:
         raise InvalidInput(f"{path}: {refusal}") from None
-    return replace(found, file_name=path.name, sha256=hashlib.sha256(content).hexdigest())
+    return replace(found, file_name=path.name, sha256=hashlib.sha256(content).hexdigest(), caveats=caveats)
 
 
 def _of_impedance(path: Path, sweep: str | None) -> ResonanceSpectrum:
@@ -175,25 +176,36 @@ def _of_impedance(path: Path, sweep: str | None) -> ResonanceSpectrum:
     return replace(found, file_name=path.name, sha256=spectrum.sha256, caveats=turned)
 
 
-def _vibration_table(path: Path, lines: list[str]) -> tuple[Floats, Complexes | Floats, str] | None:
-    """Frequency, response and quantity of a table of vibration; None without headings of one among the first lines."""
-    for line, text in enumerate(lines[:_HEAD_LINES], start=1):
-        separator = next((sign for sign in "\t;," if sign in text), ",")
-        labels = [label.strip().strip('"') for label in text.split(separator)]
-        headings = [parse_heading(label) for label in labels]
-        has_frequency = any(heading and heading.symbol == "f" for heading in headings)
-        if has_frequency and any(map(_VIBRATION.match, labels)) and not text.startswith(_COMMENTS):
-            places = _places(path, line, labels, headings)
-            rows = [(n, row.split(separator)) for n, row in enumerate(lines[line:], line + 1) if row.strip()]
-            rows = [(n, row) for n, row in rows if not row[0].startswith(_COMMENTS)]
-            require_points(len(rows), path, line=line)
-            sign = detected_decimal_sign(cell for _, row in rows for cell in row) if separator != "," else "."
-            quantity = next(kind for kind in places if kind in _ORDERS)
-            read = [kind for kind in (quantity, "phase", "frequency") if kind in places]
-            columns = {kind: _column(path, rows, places[kind], headings[places[kind]], sign) for kind in read}
-            turn = np.exp(1j * columns["phase"]) if "phase" in columns else 1.0
-            return columns["frequency"], columns[quantity] * turn, quantity
-    return None
+def _vibration_table(path: Path, content: bytes) -> tuple[Floats, Complexes | Floats, str, tuple[str, ...]] | None:
+    """Frequency, response, quantity and caveats of a table of vibration; None without headings of one."""
+    text, caveats = decoded_content(content, path)
+    found = headed_table(text_lines(text), path, is_complete=_is_vibration, is_unit=_is_unit)
+    if found is None:
+        return None
+    table = found.table
+    require_points(len(table.rows), path, line=table.line)
+    headings = [parse_heading(label) for label in table.labels]
+    places = _places(path, table.line, table.labels, headings)
+    quantity = next(kind for kind in places if kind in _ORDERS)
+    columns = {
+        kind: (heading.scale if (heading := headings[places[kind]]) else 1.0)
+        * finite_numbers(table.rows, places[kind], decimal_sign=found.decimal_sign, path=path)
+        for kind in (quantity, "phase", "frequency")
+        if kind in places
+    }
+    turn = np.exp(1j * columns["phase"]) if "phase" in columns else 1.0
+    return columns["frequency"], columns[quantity] * turn, quantity, caveats
+
+
+def _is_vibration(labels: Sequence[str]) -> bool:
+    """Whether headings name a frequency and a quantity of vibration."""
+    has_frequency = any(heading.symbol == "f" for label in labels if (heading := parse_heading(label)))
+    return has_frequency and any(map(_VIBRATION.match, labels))
+
+
+def _is_unit(text: str) -> bool:
+    """Whether a cell is a unit of such a table."""
+    return is_unit(text) or any(is_unit_of(text.strip(" ()[]"), unit) for unit in ("m", "m/s", "m/s2"))
 
 
 def _places(path: Path, line: int, labels: list[str], headings: Sequence[ColumnHeading | None]) -> dict[str, int]:
@@ -211,18 +223,3 @@ def _places(path: Path, line: int, labels: list[str], headings: Sequence[ColumnH
     if "phase" not in places and any(label.lower().startswith("phase") for label in labels):
         raise InvalidInput(f"{path}: line {line}: the phase needs a unit, 'phase (deg)' or '(rad)'")
     return places
-
-
-def _column(
-    path: Path, rows: list[tuple[int, list[str]]], place: int, heading: ColumnHeading | None, sign: str
-) -> Floats:
-    """Numbers of a column, those of frequency and phase in SI."""
-    return (heading.scale if heading else 1.0) * np.array([_number(path, n, row, place, sign) for n, row in rows])
-
-
-def _number(path: Path, line: int, row: list[str], place: int, sign: str) -> float:
-    """Number in one cell; a missing or unreadable one is refused with its line."""
-    value = parse_number(row[place].strip('" '), decimal_sign=sign) if place < len(row) else None
-    if value is None or not np.isfinite(value):
-        raise InvalidInput(f"{path}: line {line}: column {place + 1} is not a finite number")
-    return value

@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import ClassVar, Final, final
@@ -27,17 +27,19 @@ from sonolube.measurement.impedance.parts import (
     sweep_of_parts,
 )
 from sonolube.measurement.impedance.spectrum import ImpedanceSweep
-from sonolube.measurement.measured_files import detected_decimal_sign, parse_number, require_channels
-from sonolube.measurement.recordings.mapping import TextLayout
-from sonolube.measurement.recordings.text_tables import SEPARATORS, NumberedCells, text_tables
+from sonolube.measurement.measured_files import parse_number
+from sonolube.measurement.recordings.headed_tables import (
+    cell_of_row,
+    finite_numbers,
+    headed_table,
+    possible_headings,
+    without_comments,
+)
+from sonolube.measurement.recordings.text_tables import NumberedCells
 
 _LARGEST: Final = 1e30  # in any unit
-_COMMENTS: Final = ("#", "!", "%")
-_END: Final = re.compile(r"\s*END\b.*", re.IGNORECASE)
 _LONGEST_PREAMBLE: Final = 400  # lines
 _LOOKED_AT: Final = 50  # rows by which columns of complex numbers and the decimal sign are told
-_LOOKED_AT_CHARACTERS: Final = 1 << 16  # of lines that may be headings
-_BEGINS_WITH_NUMBER: Final = re.compile(r"[\s\"]*[-+]?[.,]?\d")
 _QUOTED: Final = 40  # characters of a heading in a message
 _FULL_TURN: Final = 2 * math.pi * 1.001
 
@@ -47,7 +49,6 @@ _COMPLEX: Final = re.compile(
     rf"(?:[ij]\s*\*?\s*(?P<im>{_DIGITS})|(?P<im_before>{_DIGITS})\s*\*?\s*[ij])\s*\)?"
 )
 _POLAR: Final = re.compile(rf"(?P<abs>{_DIGITS})\s*(?:∠|@)\s*(?P<deg>[-+]?\s*{_DIGITS})\s*°?")
-_DECIMALS: Final = re.compile(r"\d+[.,]\d+")
 _REFERENCE: Final = re.compile(
     r"(?:\bz_?0|\bz_?ref|\br_?ref|reference (?:impedance|resistance)|system (?:impedance|resistance)"
     r"|port impedance|bezugs(?:widerstand|impedanz)|referenzimpedanz)\b[^\d\n]{0,20}?"
@@ -78,66 +79,15 @@ class NamedColumns:
 
     def read(self, path: Path, lines: list[str]) -> dict[str, ImpedanceSweep]:
         """One sweep of a table, under an empty name."""
-        kept = _without_comments(lines)
-        at, separator, has_units = _heading_line(path, kept, lines)
-        body = [*kept[:at], lines[at].lstrip("".join(_COMMENTS)), *kept[at + 1 :]]
-        layout = TextLayout(lines_to_skip=at, separator=separator, units_row=has_units)
-        (table,) = text_tables("\n".join(body), layout, (), path, allows_short_rows=True)
-        units = [*table.units, *("" for _ in table.labels)]
-        labels = [_with_unit(label, unit) for label, unit in zip(table.labels, units, strict=False)]
-        sign = "." if separator == "," else _decimal_sign(table.rows)
-        reference = stated_reference(lines[:at])
-        return {"": sweep_from_columns(path, table.line, labels, table.rows, decimal_sign=sign, reference=reference)}
-
-
-def _without_comments(lines: list[str]) -> list[str]:
-    """Lines up to one that ends the data, comments emptied so that the others keep their numbers."""
-    end = next((at for at, line in enumerate(lines) if _END.fullmatch(line)), len(lines))
-    return ["" if line.startswith(_COMMENTS) else line for line in lines[:end]]
-
-
-def _heading_line(path: Path, kept: list[str], lines: list[str]) -> tuple[int, str, bool]:
-    """Place of the line of headings, separator of its cells, and whether a row of units follows it."""
-    for candidates in (kept, [line.lstrip("".join(_COMMENTS)) for line in lines[: len(kept)]]):
-        for at, line in _possible_headings(candidates):
-            for separator in (sign for sign in SEPARATORS if sign in line):
-                require_channels(line.count(separator) + 1, path, kind="columns")
-                labels = _cells(line, separator)
-                units = _unit_cells(kept[at + 1 :], separator)
-                joined = [_with_unit(label, unit) for label, unit in zip(labels, units, strict=False)] if units else []
-                for each in (joined, labels):
-                    if _is_complete(each):
-                        return at, separator, each is joined
-    raise InvalidInput(_reason_without_headings(path, kept))
-
-
-def _possible_headings(lines: Sequence[str]) -> Iterator[tuple[int, str]]:
-    """Yield place and text of the first lines that are not blank and do not begin with a number."""
-    characters = 0
-    for at, line in enumerate(lines[:_LONGEST_PREAMBLE]):
-        if line.strip() and not _BEGINS_WITH_NUMBER.match(line):
-            yield at, line
-            characters += len(line)
-            if characters > _LOOKED_AT_CHARACTERS:
-                return
-
-
-def _cells(line: str, separator: str) -> list[str]:
-    """Cells of a line of headings, without quotation marks."""
-    return [cell.strip().strip('"').strip() for cell in line.split(separator)]
-
-
-def _unit_cells(following: Sequence[str], separator: str) -> list[str]:
-    """Cells of the next line that is not blank, where they are units and nothing else; empty where they are not."""
-    row = next((line for line in following[:3] if line.strip()), "")
-    cells = _cells(row, separator)
-    filled = [cell for cell in cells if cell]
-    return cells if len(filled) > 1 and all(map(is_unit, filled)) else []
-
-
-def _with_unit(label: str, unit: str) -> str:
-    """Heading with the unit of the row below it."""
-    return f"{label} ({unit.strip(' ()[]')})" if unit.strip() else label
+        found = headed_table(lines, path, is_complete=_is_complete, is_unit=is_unit)
+        if found is None:
+            raise InvalidInput(_reason_without_headings(path, without_comments(lines)))
+        table, reference = found.table, stated_reference(found.preamble)
+        return {
+            "": sweep_from_columns(
+                path, table.line, table.labels, table.rows, decimal_sign=found.decimal_sign, reference=reference
+            )
+        }
 
 
 def _is_complete(labels: Sequence[str]) -> bool:
@@ -151,30 +101,16 @@ def _reason_without_headings(path: Path, kept: list[str]) -> str:
     first = next((at for at, line in enumerate(kept) if line.strip()), None)
     if first is None:
         return f"{path}: line {len(kept)}: holds no row"
-    for at, line in _possible_headings(kept):
-        for separator in (sign for sign in SEPARATORS if sign in line):
-            labels = _cells(line, separator)
-            if any(heading.symbol == "f" for label in labels if (heading := parse_heading(label))):
-                unclear = ((label, unclear_heading(label)) for label in labels)
-                if found := next((each for each in unclear if each[1]), None):
-                    return f"{path}: line {at + 1}: {found[0][:_QUOTED]!r} {found[1]}"
-                first = at
+    for at, _, labels in possible_headings(kept, path):
+        if any(heading.symbol == "f" for label in labels if (heading := parse_heading(label))):
+            unclear = ((label, unclear_heading(label)) for label in labels)
+            if found := next((each for each in unclear if each[1]), None):
+                return f"{path}: line {at + 1}: {found[0][:_QUOTED]!r} {found[1]}"
+            first = at
     return (
         f"{path}: line {first + 1}: names no columns of frequency and impedance, such as"
         " 'frequency (Hz)', '|Z| (ohm)', 'phase (deg)' or 'R (ohm)', 'X (ohm)'"
     )
-
-
-def _decimal_sign(rows: Sequence[NumberedCells]) -> str:
-    """Decimal sign of the numbers in cells, those within complex numbers too."""
-    return detected_decimal_sign(_decimals_of(rows))
-
-
-def _decimals_of(rows: Sequence[NumberedCells]) -> Iterator[str]:
-    """Yield the numbers with a decimal sign."""
-    for _, cells in rows:
-        for cell in cells:
-            yield from _DECIMALS.findall(cell)
 
 
 def stated_reference(preamble: Sequence[str]) -> float | None:
@@ -289,7 +225,7 @@ class _Columns:
         if place is None or not any(self.places(symbol) for symbol in COMPLEX_PARTS):
             return self, ()
         label = self.labels[place].strip()[:_QUOTED]
-        largest = float(np.max(np.abs([self._number(row, place) for row in self.rows])))
+        largest = float(np.max(np.abs(self._numbers(place))))
         if not largest > _FULL_TURN:
             raise InvalidInput(
                 f"{self.path}: line {self.line}: {label!r} needs a unit, 'phase (deg)' or '(rad)': its numbers of up to"
@@ -303,34 +239,21 @@ class _Columns:
     def _in_si(self, place: int) -> Floats:
         """Numbers of one column in SI."""
         heading = self.headings[place]
-        numbers = np.array([self._number(row, place) for row in self.rows])
+        numbers = self._numbers(place)
         with np.errstate(all="ignore"):
             return np.asarray(heading.in_si(numbers) if heading else numbers)
 
-    def _number(self, row: NumberedCells, place: int) -> float:
-        """Number in one cell of a row; refuse a missing cell and what is no finite number."""
-        line, cell = self._cell(row, place)
-        value = parse_number(cell, decimal_sign=self.decimal_sign)
-        if value is None or not np.isfinite(value):
-            raise InvalidInput(f"{self.path}: line {line}: {cell.strip()[:_QUOTED]!r} is not a finite number")
-        if abs(value) > _LARGEST:
-            raise InvalidInput(f"{self.path}: line {line}: {cell.strip()[:_QUOTED]!r} lies beyond any instrument")
-        return value
+    def _numbers(self, place: int) -> Floats:
+        """Numbers of one column as written."""
+        return finite_numbers(self.rows, place, decimal_sign=self.decimal_sign, path=self.path)
 
     def _complex_cell(self, row: NumberedCells, place: int) -> complex:
         """Complex number in one cell of a row."""
-        line, cell = self._cell(row, place)
+        line, cell = cell_of_row(row, place, self.path)
         value = _complex_number(cell.strip(), self.decimal_sign)
         if value is None or not abs(value) < _LARGEST:
             raise InvalidInput(f"{self.path}: line {line}: {cell.strip()[:_QUOTED]!r} is not a complex number")
         return value
-
-    def _cell(self, row: NumberedCells, place: int) -> tuple[int, str]:
-        """Line and text of one cell of a row; refuse a row that ends before it."""
-        line, cells = row
-        if place >= len(cells):
-            raise InvalidInput(f"{self.path}: line {line}: has {len(cells)} cells where column {place + 1} is required")
-        return line, cells[place]
 
 
 def _complex_number(cell: str, decimal_sign: str) -> complex | None:

@@ -78,7 +78,17 @@ def _units() -> frozenset[str]:
 
 def is_written_unit(text: str) -> bool:
     """Whether a text is a unit of a channel as instruments write it."""
-    return text in _units() or text in _OTHER_MEANINGS or text.lower() in _SPELLINGS
+    plain = text.replace("µ", "u").replace("μ", "u")
+    return plain in _units() or text in _OTHER_MEANINGS or text.lower() in _SPELLINGS
+
+
+def is_unit_of(written: str, unit: str) -> bool:
+    """Whether a written unit is of the kind of an SI unit."""
+    try:
+        si_conversion(written, unit=unit, name="")
+    except InvalidInput:
+        return False
+    return True
 
 
 def convert_to_si(values: Floats, *, written_unit: str, unit: str, name: str) -> Floats:
