@@ -4,33 +4,38 @@ A row is that of the headings whose cells name the most quantities. Two rows are
 columns stand above those of each. A grid whose first column names more than any row has its runs as columns.
 """
 
-import csv
 import io
 import re
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
 from typing import Final
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.measured_files import parse_number, require_channels
+from sonolube.measurement.measured_files import parse_number
 from sonolube.measurement.recordings.mapping import TextLayout
 from sonolube.measurement.recordings.raw_table import one_line
-from sonolube.measurement.recordings.text_tables import NumberedCells, TextTable
+from sonolube.measurement.recordings.table_layout import NoRow, rows_and_others
+from sonolube.measurement.recordings.text_tables import (
+    NARROW,
+    SEPARATORS,
+    WIDE,
+    NumberedCells,
+    TextTable,
+    labels_of_cells,
+    text_rows,
+)
 from sonolube.measurement.run_columns import TEXT_NAMES
 from sonolube.measurement.run_headings import fits, run_heading
 from sonolube.measurement.run_numbers import cell_number
 
 _PREAMBLE: Final = re.compile(r'"?\s*(?:[#%](?!\s*[;,\t|])|//)|[\s;,"|]*\Z')  # comments, and lines without any text
 _SEPARATOR_LINE: Final = re.compile(r"sep=(.)", re.IGNORECASE)  # with which Excel tells its separator
-_RULE: Final = re.compile(r":?[-=]{2,}:?")  # below the headings of a table as text
-_SEPARATORS: Final = "\t;,|"
-_WIDE, _NARROW = "  ", " "  # two blanks or more, and one or more
 _LOOKED_AT: Final = 60  # rows in which the headings are sought
 _MAX_ROWS_OF_HEADS: Final = 2
 _FEWEST_KNOWN: Final = 2  # headings that make a row other than the first that of the headings
-_NOTE_COLUMNS: Final = 3  # of a table in which a row of one text is a remark
 _FEWEST_COUNTED: Final = 2  # rows that a column without heading numbers
 _QUOTED: Final = 40  # characters of a cell in a caveat
 
@@ -46,8 +51,6 @@ class LaidOut:
         Lines and columns that are no part of it, one caveat each.
     is_turned : bool
         Whether the runs are columns of the file, whose numbers stand in place of those of lines.
-    is_headless : bool
-        Whether it has no headings.
     known : int
         Headings that name a quantity.
     """
@@ -55,7 +58,6 @@ class LaidOut:
     table: TextTable
     left_out: tuple[str, ...]
     is_turned: bool
-    is_headless: bool
     known: int
 
 
@@ -87,7 +89,7 @@ def laid_out_text(text: str, layout: TextLayout, path: Path) -> LaidOut:
             first -= 1
             lines[first] = bare
     separator = separator or _separator(lines, first, path, is_fixed=is_fixed)
-    rows = _rows(lines, first, separator, path, is_whole=True)
+    rows = _rows(lines, first, separator, path)
     if not rows:
         raise InvalidInput(f"{path}: line {first + 1}: no column names")
     return laid_out(rows, path, separator=separator, is_fixed=is_fixed)
@@ -101,78 +103,59 @@ def laid_out(rows: Sequence[NumberedCells], path: Path, *, separator: str, is_fi
         rows = turned[1]
         heads = _Heads(0, 1, [one_line(cell) for cell in rows[0][1]], turned[0])
     line, cells = rows[heads.first]
-    labels, start = heads.labels, heads.first + heads.count
     is_headless = not heads.known and len(cells) > 1 and all(_is_number(cell) or not cell.strip() for cell in cells)
-    if is_headless:
-        labels, start = [f"column {place}" for place in range(1, len(cells) + 1)], heads.first
-    while labels and not labels[-1]:
-        labels.pop()
-    if not labels:
-        raise InvalidInput(f"{path}: line {line}: no column names")
-    require_channels(len(labels), path, kind="columns")
-    heading_rows = [[cell.strip() for cell in each] for _, each in rows[heads.first : start]]
+    start = heads.first + (0 if is_headless else heads.count)
+    labels = labels_of_cells(cells if is_headless else heads.labels, line, path, is_headless=is_headless)
+    heading_rows = [each for _, each in rows[heads.first : start]]
     units = _units(labels, rows[start][1]) if start < len(rows) else None
     if units is not None:
-        heading_rows.append([cell.strip() for cell in rows[start][1]])
+        heading_rows.append(rows[start][1])
         labels, start = units, start + 1
-    body, notes = _body(rows[start:], labels, heading_rows, path)
+    body, others = rows_and_others(rows[start:], len(labels), heading_rows, path)
+    notes = [_note(each) for each in others]
     labels, body, of_columns = _without_empty(labels, body)
-    table = TextTable(
-        section="",
-        begun="",
-        line=1 if is_turned else line,
-        labels=labels,
-        units=[],
-        rows=body,
-        unread=0,
-        separator=separator,
-    )
+    table = TextTable(line=1 if is_turned else line, labels=labels, rows=body, separator=separator)
     left_out = (*notes, *of_columns)
     if is_turned:
         left_out = tuple(each.replace("line ", "column ", 1) for each in left_out)
-    return LaidOut(table=table, left_out=left_out, is_turned=is_turned, is_headless=is_headless, known=heads.known)
+    return LaidOut(table=table, left_out=left_out, is_turned=is_turned, known=heads.known)
 
 
 def _separator(lines: Sequence[str], first: int, path: Path, *, is_fixed: bool) -> str:
     """Separator with which most headings are known; blanks only where no other stands in the line of the headings."""
-    usual = {each: _rank(lines, first, each, path, is_fixed=is_fixed) for each in _SEPARATORS}
+    usual = {each: _rank(lines, first, each, path, is_fixed=is_fixed) for each in SEPARATORS}
     best = max(usual, key=usual.__getitem__)
     if usual[best][0] >= _FEWEST_KNOWN:
         return best
-    for blank in (_WIDE, _NARROW):
-        rows = _rows(lines[: first + _LOOKED_AT], first, blank, path, is_whole=False)
+    for blank in (WIDE, NARROW):
+        rows = _first_rows(lines, first, blank, path)
         heads = _heads(rows, is_fixed=is_fixed) if rows else None
         if heads is not None and heads.known > usual[best][0]:
             line = lines[rows[heads.first][0] - 1]
-            return best if any(each in line for each in _SEPARATORS) else blank
+            return best if any(each in line for each in SEPARATORS) else blank
     return best
 
 
 def _rank(lines: Sequence[str], first: int, separator: str, path: Path, *, is_fixed: bool) -> tuple[int, int]:
     """How well a separator divides a text: by its known headings, then by the cells of the first line."""
-    rows = _rows(lines[: first + _LOOKED_AT], first, separator, path, is_whole=False)
+    rows = _first_rows(lines, first, separator, path)
     turned = _turned(rows)
     known = max(_heads(rows, is_fixed=is_fixed).known if rows else 0, 0 if turned is None else turned[0])
     return known, lines[first].count(separator) if first < len(lines) else 0
 
 
-def _rows(lines: Sequence[str], first: int, separator: str, path: Path, *, is_whole: bool) -> list[NumberedCells]:
+def _rows(lines: Sequence[str], first: int, separator: str, path: Path) -> list[NumberedCells]:
     """Rows of a text that have a cell with text, with the line on which each begins."""
-    if separator in (_WIDE, _NARROW):
-        blanks = re.compile(r"\s{2,}|\t" if separator == _WIDE else r"\s+")
-        split = ((number, blanks.split(line.strip())) for number, line in enumerate(lines[first:], first + 1))
-        return [(number, cells) for number, cells in split if any(cells) and not _is_comment(lines[number - 1])]
+    rows = text_rows(lines, first, separator, path, is_comment=_is_comment)
+    return [row for row in rows if any(cell.strip() for cell in row[1])]
+
+
+def _first_rows(lines: Sequence[str], first: int, separator: str, path: Path) -> list[NumberedCells]:
+    """Rows among which the headings are sought, up to one that cannot be divided so."""
     rows: list[NumberedCells] = []
-    reader = csv.reader(io.StringIO("".join(lines[first:]), newline=""), delimiter=separator, strict=True)
-    begins = first + 1
-    try:
-        for cells in reader:
-            if any(cell.strip() for cell in cells) and not _is_comment(lines[begins - 1]):
-                rows.append((begins, _within_bars(cells) if separator == "|" else cells))
-            begins = first + reader.line_num + 1
-    except csv.Error as failure:
-        if is_whole:
-            raise InvalidInput(f"{path}: line {begins}: {failure}") from None
+    with suppress(InvalidInput):
+        for row in text_rows(lines[: first + _LOOKED_AT], first, separator, path, is_comment=_is_comment):
+            rows += [row] if any(cell.strip() for cell in row[1]) else []
     return rows
 
 
@@ -185,12 +168,6 @@ def _is_row_of_numbers(line: str) -> bool:
 def _is_comment(line: str) -> bool:
     """Whether a line is a comment."""
     return bool(line.strip()) and _PREAMBLE.match(line) is not None
-
-
-def _within_bars(cells: list[str]) -> list[str]:
-    """Cells of a line that begins and ends with a bar."""
-    begins = 1 if len(cells) > 1 and not cells[0].strip() else 0
-    return cells[begins:-1] if begins and not cells[-1].strip() else cells
 
 
 def _is_number(cell: str) -> bool:
@@ -271,35 +248,11 @@ def _units(labels: Sequence[str], row: Sequence[str]) -> list[str] | None:
     return named + list(labels[len(named) :])
 
 
-def _body(
-    rows: Sequence[NumberedCells], labels: Sequence[str], heading_rows: Sequence[Sequence[str]], path: Path
-) -> tuple[list[NumberedCells], list[str]]:
-    """Rows of a table, and a caveat on each line between them that is none."""
-    body: list[NumberedCells] = []
-    notes: list[str] = []
-    heads = [_trimmed(each) for each in heading_rows]
-    for line, cells in rows:
-        stripped = _trimmed([cell.strip() for cell in cells])
-        filled = [cell for cell in stripped if cell]
-        if not filled or all(_RULE.fullmatch(cell) for cell in filled):
-            continue
-        if stripped in heads:
-            notes.append(f"line {line} repeats the headings and is left out")
-        elif len(filled) == 1 and len(labels) >= _NOTE_COLUMNS and not _is_number(filled[0]):
-            notes.append(f"line {line} is no run and left out: {filled[0][:_QUOTED]!r}")
-        elif len(stripped) > len(labels):
-            raise InvalidInput(f"{path}: line {line}: has {len(stripped)} cells where {len(labels)} columns are named")
-        else:
-            body.append((line, cells))
-    return body, notes
-
-
-def _trimmed(cells: Sequence[str]) -> list[str]:
-    """Cells without empty ones at the end."""
-    trimmed = list(cells)
-    while trimmed and not trimmed[-1]:
-        trimmed.pop()
-    return trimmed
+def _note(other: NoRow) -> str:
+    """Caveat on a line that is no run."""
+    if other.kind == "heading":
+        return f"line {other.line} repeats the headings and is left out"
+    return f"line {other.line} is no run and left out: {other.words[:_QUOTED]!r}"
 
 
 def _without_empty(

@@ -145,7 +145,7 @@ def _text(path: Path, mapping: RecordingMapping | None) -> tuple[LaidOut, tuple[
     tables = text_tables(text, layout, sections, path, allows_short_rows=True)
     if len(tables) > 1:
         raise InvalidInput(f"{path}: has {len(tables)} sections; choose one by selection.sections of the mapping")
-    return LaidOut(table=tables[0], left_out=(), is_turned=False, is_headless=False, known=0), caveats
+    return LaidOut(table=tables[0], left_out=(), is_turned=False, known=0), caveats
 
 
 def _sheet(path: Path, mapping: RecordingMapping | None) -> tuple[LaidOut, tuple[str, ...]]:

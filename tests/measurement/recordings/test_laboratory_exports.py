@@ -115,3 +115,13 @@ def test_a_large_text_is_read_as_a_small_one(
 def test_a_line_of_a_large_text_is_refused_by_its_number(line: str, said: str, tmp_path: Path) -> None:
     with raises(InvalidInput, match=said):
         read_recording(large(tmp_path / "large.csv", changes={5000: line}))
+
+
+def test_remarks_rules_and_comments_between_samples_are_no_samples(tmp_path: Path) -> None:
+    rows = [f"{t:.3f} | {f:.5f} | 5.0" for t, f in zip(TIME, FORCE, strict=True)]
+    rows[10:10] = ["# pause", "pause of the operator", "--- | --- | ---", ""]
+    path = tmp_path / "remarks.txt"
+    path.write_text("\n".join(["time [s] | friction force [N] | load [N]", *rows]))
+    recording = read_recording(path)
+    assert recording["friction_force"].to_numpy() == approx(FORCE, abs=1e-5)
+    assert recording.attrs["caveats"] == "no row of samples, for it is a remark, and left out: line 13"

@@ -6,29 +6,40 @@ Rows are told by the cells of the middle of a file; labels and units stand in th
 import csv
 import io
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from itertools import islice, pairwise
+from pathlib import Path
+from typing import Literal
 
-from sonolube.measurement.measured_files import parse_number
-from sonolube.measurement.recordings.mapping import TextLayout
+from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.raw_table import is_written_unit
+from sonolube.measurement.recordings.text_tables import (
+    NARROW,
+    SEPARATORS,
+    NumberedCells,
+    TextTable,
+    is_number,
+    labels_of_cells,
+    text_rows,
+    unit_of_cell,
+)
 
-_SEPARATORS = "\t;,| "  # the last one any number of blanks
+_SEPARATORS = SEPARATORS + NARROW
 _FEWEST_LINES = 8  # of a file whose layout is sought
 _LONGEST_PREAMBLE = 400  # lines
 _LOOKED_AT = 1 << 16  # characters of the beginning and of the middle of a file
 _MIDDLE = 3  # rows by which the columns are told
 _HEADING = 4  # lines of one: groups, labels, units, remarks
 _WIDER = 2  # cells that a heading may have more than a row
-_MOST_WORDS = 1000  # lines below the labels that begin with a letter, among which headings and summaries are sought
-_MOST_NAMED = 3  # lines in a caveat
+_RULE = re.compile(r":?[-=]{2,}:?")  # below the headings of a table as text
+_REMARK_COLUMNS = 3  # of a table in which a row of one text is a remark
+_MAX_NAMED = 3  # lines in a caveat
 
 _COMMENT_SIGNS = "#%"
 _CLOCK = re.compile(r"[\d./:,+ TZ-]*\d:\d\d(?::\d\d)?[\d.,:+ TZ-]*(?:[AaPp]\.?[Mm]\.?)?", re.ASCII)
 _DATE = re.compile(r"\d{1,4}([./-])\d{1,2}\1\d{1,4}", re.ASCII)
 _THOUSANDS = re.compile(r"[-+]?\d{1,3}(?:([.,])\d{3})+(?:(?!\1)[.,]\d+)?", re.ASCII)
-_WORD_FIRST = re.compile(r'(?m)^[ "\']*(?!(?:nan|inf|NaN|NA|N/A|null)\b)[^\W\d_][^\r\n]*')
 _IN_BRACKETS = re.compile(r"[^\s\[(]+(?:\s*(?:\[[^\]]*\]|\([^)]*\)))?")
 _NO_UNITS = ("", "-", "1", "Sequence")
 _SUMMARIES = frozenset(
@@ -40,6 +51,32 @@ _SUMMARIES = frozenset(
     }
 )
 _LONGEST_SUMMARY = 40  # characters of a cell that names one
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FoundTable:
+    """Table of a text whose layout was found in its cells.
+
+    Parameters
+    ----------
+    table : TextTable
+    has_labels : bool
+    others : tuple of NoRow
+        Lines between its rows that are none.
+    """
+
+    table: TextTable
+    has_labels: bool
+    others: tuple["NoRow", ...]
+
+
+@dataclass(frozen=True, slots=True)
+class NoRow:
+    """Line of a table that is no row: why, and the words by which that is told."""
+
+    line: int
+    kind: Literal["heading", "summary", "remark"]
+    words: str = ""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -57,36 +94,87 @@ def is_summary(cell: str) -> bool:
     return len(cell) <= _LONGEST_SUMMARY and cell.strip(" .:*()[]=\t").casefold() in _SUMMARIES
 
 
-def with_found_layout(text: str, layout: TextLayout) -> tuple[str, TextLayout, tuple[str, ...]]:
-    """Text of a table with its layout, where none is stated, and caveats; lines that are no rows are blank in it.
+def rows_and_others(
+    rows: Iterable[NumberedCells], width: int, heading_rows: Sequence[Sequence[str]], path: Path
+) -> tuple[list[NumberedCells], list[NoRow]]:
+    """Rows of a table of a width, and the lines between them that are none: headings again, summaries, and remarks.
 
-    A text keeps its number of lines. Where nothing is found it stays as it is.
+    Blank lines and rules are passed over. A line with one cell of text is a remark where the table has three columns.
     """
-    if layout != TextLayout():
-        return text, layout, ()
+    body: list[NumberedCells] = []
+    others: list[NoRow] = []
+    heads = [_trimmed(each) for each in heading_rows]
+    for row in rows:
+        line, cells = row
+        if len(cells) == width and cells[0][:1].isdigit() and not any(cell[:1].isalpha() for cell in cells):
+            body.append(row)  # as nearly all of a long table
+            continue
+        stripped = _trimmed(cells)
+        filled = [cell for cell in stripped if cell]
+        if not filled or all(_RULE.fullmatch(cell) for cell in filled):
+            continue
+        if stripped in heads:
+            others.append(NoRow(line, "heading"))
+        elif summary := next(filter(is_summary, filled), ""):
+            others.append(NoRow(line, "summary", summary))
+        elif len(filled) == 1 and width >= _REMARK_COLUMNS and not is_value(filled[0]):
+            others.append(NoRow(line, "remark", filled[0]))
+        elif len(stripped) > width:
+            raise InvalidInput(f"{path}: line {line}: has {len(stripped)} cells where {width} columns are named")
+        else:
+            body.append(row)
+    return body, others
+
+
+def _trimmed(cells: Sequence[str]) -> list[str]:
+    """Cells without blanks around them, and without empty ones at the end."""
+    trimmed = [cell.strip() for cell in cells]
+    while trimmed and not trimmed[-1]:
+        trimmed.pop()
+    return trimmed
+
+
+def found_table(text: str, path: Path) -> FoundTable | None:
+    """Table of a text whose rows and labels are told by their cells; None where they are not."""
     found = _found(text)
     if found is None:
-        return text, layout, ()
-    first = found.first_row if found.labels is None else found.labels
-    layout = replace(
-        layout,
-        separator="\t" if found.separator == " " else found.separator,
-        lines_to_skip=first,
-        units_row=found.units is not None,
-        has_labels=found.labels is not None,
-    )
-    changes = _headings(text, found)
-    others, caveats = _no_rows(text, found)
-    changes |= others
-    if not changes and found.separator != " ":
-        return text, layout, caveats
+        return None
     lines = list(io.StringIO(text, newline=""))
-    if found.separator == " ":
-        for at in range(found.first_row, len(lines)):
-            lines[at] = "\t".join(lines[at].split()) + "\n"
-    for at, line in changes.items():
-        lines[at] = line
-    return "".join(lines), layout, caveats
+    rows = text_rows(lines, found.first_row, found.separator, path, is_comment=_is_comment)
+    first = next(rows)
+    heads = [
+        _heading_cells(lines[at], found.separator, len(first[1])) if at is not None else []
+        for at in (found.labels, found.units)
+    ]
+    labels = labels_of_cells(heads[0] or first[1], found.first_row, path, is_headless=found.labels is None)
+    body, others = rows_and_others((first, *rows), len(labels), [each for each in heads if each], path)
+    _require_whole(body, len(labels), path)
+    table = TextTable(
+        line=(found.first_row if found.labels is None else found.labels) + 1,
+        labels=labels,
+        units=[unit_of_cell(cell) for cell in heads[1]],
+        rows=body,
+        separator=found.separator,
+    )
+    return FoundTable(table=table, has_labels=found.labels is not None, others=tuple(others))
+
+
+def _require_whole(rows: Sequence[NumberedCells], width: int, path: Path) -> None:
+    """Refuse a row that lacks cells."""
+    short = next((row for row in rows if len(row[1]) < width), None)
+    if short is not None:
+        raise InvalidInput(f"{path}: line {short[0]}: has {len(short[1])} cells where {width} columns are named")
+
+
+def left_out_lines(others: Sequence[NoRow]) -> tuple[str, ...]:
+    """Caveats on the lines of a recording that are no samples."""
+    reasons = {"heading": "repeats the labels", "summary": "summarises the others", "remark": "is a remark"}
+    caveats = []
+    for kind, reason in reasons.items():
+        if at := [each.line for each in others if each.kind == kind]:
+            named = ", ".join(map(str, at[:_MAX_NAMED])) + (", ..." if len(at) > _MAX_NAMED else "")
+            caveats.append(f"no row of samples, for it {reason}, and left out: line {named}")
+    return tuple(caveats)
 
 
 def _found(text: str) -> _Found | None:
@@ -112,8 +200,12 @@ def _found(text: str) -> _Found | None:
 
 def _is_filled(line: str) -> bool:
     """Whether a line is neither blank nor a comment."""
-    text = line.strip()
-    return bool(text) and text[0] not in _COMMENT_SIGNS
+    return bool(line.strip()) and not _is_comment(line)
+
+
+def _is_comment(line: str) -> bool:
+    """Whether a line is a comment."""
+    return line.lstrip()[:1] in tuple(_COMMENT_SIGNS)
 
 
 def _cells(line: str, separator: str) -> list[str]:
@@ -134,26 +226,25 @@ def _rank(rows: Sequence[str], separator: str) -> tuple[bool, int] | None:
         return None
     columns = [[cells[place].strip() for cells in split] for place in range(width)]
     filled = [column for column in columns if any(column)]
-    values = sum(all(map(_is_value, column)) for column in filled)
+    values = sum(all(map(is_value, column)) for column in filled)
     return (values == len(filled), values) if values else None
 
 
-def _is_value(cell: str) -> bool:
+def is_value(cell: str) -> bool:
     """Whether a cell is a number, whatever its decimal sign, a date or a time of a clock."""
     text = cell.strip()
-    numeric = any(parse_number(text, decimal_sign=sign) is not None for sign in ".,")
-    return numeric or any(form.fullmatch(text) for form in (_CLOCK, _DATE, _THOUSANDS))
+    return is_number(text) or any(form.fullmatch(text) for form in (_CLOCK, _DATE, _THOUSANDS))
 
 
 def _first_row(lines: Sequence[str], middle: Sequence[str], separator: str) -> int | None:
     """Index of the first of two lines with values where the rows of the middle have them."""
     rows = [_cells(row, separator) for row in middle]
-    valued = [place for place in range(len(rows[0])) if all(_is_value(cells[place]) for cells in rows)]
+    valued = [place for place in range(len(rows[0])) if all(is_value(cells[place]) for cells in rows)]
     filled = [(at, _cells(line, separator)) for at, line in enumerate(lines) if _is_filled(line)]
     fits = [
         len(cells) == len(rows[0])
-        and any(_is_value(cells[place]) for place in valued)
-        and all(not cells[place].strip() or _is_value(cells[place]) for place in valued)
+        and any(is_value(cells[place]) for place in valued)
+        and all(not cells[place].strip() or is_value(cells[place]) for place in valued)
         for _, cells in filled
     ]
     pairs = zip(filled, fits, [*fits[1:], False], strict=True)
@@ -175,7 +266,7 @@ def _labels_and_units(
         cells = _heading_cells(lines[at], separator, width)
         while cells and not cells[-1].strip():
             cells.pop()
-        is_heading = len(row) <= len(cells) <= width + _WIDER and not all(map(_is_value, filter(None, cells)))
+        is_heading = len(row) <= len(cells) <= width + _WIDER and not all(map(is_value, filter(None, cells)))
         if not is_heading or len(above) == _HEADING:
             break
         above.append(at)
@@ -187,7 +278,7 @@ def _labels_and_units(
 
 def _heading_cells(line: str, separator: str, width: int) -> list[str]:
     """Cells of a line above the rows, without the sign of a comment; labels of several words between blanks."""
-    text = line.strip("\r\n").lstrip(_COMMENT_SIGNS) if line.strip()[:1] in tuple(_COMMENT_SIGNS) else line
+    text = line.strip("\r\n").lstrip().lstrip(_COMMENT_SIGNS) if _is_comment(line) else line
     if separator != " ":
         return _cells(text, separator)
     wide = re.split(r"\t|\s{2,}", text.strip())
@@ -198,46 +289,4 @@ def _are_units(cells: Sequence[str]) -> bool:
     """Whether cells are units, some of them, and numbers otherwise."""
     texts = [cell.strip().strip("[]()").strip() for cell in cells]
     units = [text for text in texts if is_written_unit(text)]
-    return bool(units) and all(text in _NO_UNITS or text in units or _is_value(text) for text in texts)
-
-
-def _headings(text: str, found: _Found) -> dict[int, str]:
-    """New lines of the heading by index: labels between tabs and without the sign of a comment, remarks blank."""
-    if found.labels is None:
-        return {}
-    lines = list(islice(io.StringIO(text, newline=""), found.first_row))
-    changes = dict.fromkeys(range(found.labels, found.first_row), "\n")
-    rows = filter(_is_filled, text[len("".join(lines)) :][:_LOOKED_AT].splitlines())
-    width = len(_cells(next(rows), found.separator))
-    for at in (found.labels, *([] if found.units is None else [found.units])):
-        if found.separator == " ":
-            changes[at] = "\t".join(_heading_cells(lines[at], found.separator, width)) + "\n"
-        else:
-            is_comment = lines[at].lstrip()[:1] in tuple(_COMMENT_SIGNS)
-            changes[at] = lines[at].lstrip().lstrip(_COMMENT_SIGNS) if is_comment else lines[at]
-    return {at: line for at, line in changes.items() if line != lines[at]}
-
-
-def _no_rows(text: str, found: _Found) -> tuple[dict[int, str], tuple[str, ...]]:
-    """Blank lines in place of repeated headings and of summaries, by index, and caveats about them."""
-    lines = io.StringIO(text, newline="")
-    head = [next(lines) for _ in range(found.first_row)]
-    repeated = {head[at].strip() for at in (found.labels, found.units) if at is not None}
-    words = list(islice(_WORD_FIRST.finditer(text, pos=len("".join(head))), _MOST_WORDS + 1))
-    if len(words) > _MOST_WORDS:
-        return {}, ()
-    headings, summaries = [], []
-    for match in words:
-        cells = _cells(match[0], found.separator)
-        if match[0].strip() in repeated:
-            headings.append(match.start())
-        elif any(map(is_summary, cells)):
-            summaries.append(match.start())
-    at = {place: text.count("\n", 0, place) for place in (*headings, *summaries)}
-    caveats = []
-    for places, what in ((headings, "repeats the labels"), (summaries, "summarises the others")):
-        if places:
-            named = ", ".join(str(at[place] + 1) for place in places[:_MOST_NAMED])
-            more = ", ..." if len(places) > _MOST_NAMED else ""
-            caveats.append(f"no row of samples, for it {what}, and left out: line {named}{more}")
-    return dict.fromkeys(at.values(), "\n"), tuple(caveats)
+    return bool(units) and all(text in _NO_UNITS or text in units or is_value(text) for text in texts)

@@ -26,8 +26,9 @@ from sonolube.measurement.recordings.raw_table import (
     numbered_labels,
     si_conversion,
 )
-from sonolube.measurement.recordings.table_layout import with_found_layout
+from sonolube.measurement.recordings.table_layout import found_table, left_out_lines
 from sonolube.measurement.recordings.text_tables import (
+    NARROW,
     TextTable,
     column_values,
     decoded_text,
@@ -67,14 +68,15 @@ class DelimitedText:
         if (large := _large_table(path, mapping)) is not None:
             return large
         text, caveats = decoded_text(path, encoding=layout.encoding)
-        text, layout, left_out = with_found_layout(text, layout)
-        tables = text_tables(text, layout, mapping.selection.sections if mapping else (), path)
+        found = found_table(text, path) if layout == TextLayout() else None
+        sections = mapping.selection.sections if mapping else ()
+        tables = [found.table] if found and not sections else text_tables(text, layout, sections, path)
         sign = layout.decimal_sign or _detected_decimal_sign(tables)
         read = [_part(table, mapping, sign, frozenset(layout.missing), path) for table in tables]
         parts, unused = [columns for columns, _ in read], read[0][1]
         _require_same_columns(tables, parts, path)
         columns, assumed = _joined(tables, parts, mapping, path)
-        caveats += left_out + _left_out_caveat(unused)
+        caveats += (left_out_lines(found.others) if found else ()) + _left_out_caveat(unused)
         unread = sum(table.unread for table in tables)
         if unread:
             caveats += (f"{unread} lines after the end of a table are not read",)
@@ -92,8 +94,8 @@ class DelimitedText:
 def export_table(path: Path) -> TextTable:
     """First table of a text export as its reader finds it; of a large one its beginning."""
     text = ends_of_large_text(path) or decoded_text(path, encoding="")[0]
-    text, layout, _ = with_found_layout(text, TextLayout())
-    return text_tables(text, layout, (), path)[0]
+    found = found_table(text, path)
+    return found.table if found else text_tables(text, TextLayout(), (), path)[0]
 
 
 def _large_table(path: Path, mapping: RecordingMapping | None) -> RawTable | None:
@@ -104,10 +106,13 @@ def _large_table(path: Path, mapping: RecordingMapping | None) -> RawTable | Non
     ends = ends_of_large_text(path)
     if ends is None:
         return None
-    text, found, caveats = with_found_layout(ends, layout)
-    if caveats or not found.has_labels or text != ends:
+    try:
+        found = found_table(ends, path)
+    except InvalidInput:
         return None
-    table = text_tables(text, found, (), path)[0]
+    if found is None or found.others or not found.has_labels or found.table.separator == NARROW:
+        return None
+    table = found.table
     sign = _detected_decimal_sign([table])
     missing = frozenset(layout.missing)
     try:

@@ -7,9 +7,10 @@ import codecs
 import csv
 import io
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 
 from sonolube.checks import Floats
@@ -95,6 +96,54 @@ def is_text(rows: Sequence[NumberedCells], index: int, decimal_sign: str, missin
 SEPARATORS = "\t;,|"
 """Between the cells of a row; the first ones are preferred."""
 
+WIDE, NARROW = "  ", " "
+"""Separators that are two blanks or more, and one or more."""
+
+_BLANKS = {WIDE: re.compile(r"\s{2,}|\t"), NARROW: re.compile(r"\s+")}
+
+
+def text_rows(
+    lines: Sequence[str], first: int, separator: str, path: Path, *, is_comment: Callable[[str], bool]
+) -> Iterator[NumberedCells]:
+    """Yield the rows from a line on, blank ones too, without comments; quoted cells may span lines."""
+    if separator in _BLANKS:
+        for at, line in enumerate(lines[first:], first):
+            if not is_comment(line):
+                yield at + 1, _BLANKS[separator].split(line.strip())
+        return
+    reader = csv.reader(lines[first:], delimiter=separator, strict=True)
+    begins = first
+    try:
+        for cells in reader:
+            if not is_comment(lines[begins]):
+                yield begins + 1, _within_bars(cells) if separator == "|" else cells
+            begins = first + reader.line_num
+    except csv.Error as failure:
+        raise InvalidInput(f"{path}: line {begins + 1}: {failure}") from None
+
+
+def _within_bars(cells: list[str]) -> list[str]:
+    """Cells of a line that begins and ends with a bar."""
+    begins = 1 if len(cells) > 1 and not cells[0].strip() else 0
+    return cells[begins:-1] if begins and not cells[-1].strip() else cells
+
+
+def is_number(cell: str) -> bool:
+    """Whether a cell holds a plain number, whatever its decimal sign."""
+    return any(parse_number(cell, decimal_sign=sign) is not None for sign in ".,")
+
+
+def labels_of_cells(cells: Sequence[str], line: int, path: Path, *, is_headless: bool = False) -> list[str]:
+    """Labels of the columns of a row, without empty ones at its end; "column 1" and so on where it has numbers."""
+    labels = [f"column {place}" if is_headless else one_line(label) for place, label in enumerate(cells, start=1)]
+    while labels and not labels[-1]:
+        labels.pop()
+    if not labels:
+        raise InvalidInput(f"{path}: line {line}: no column names")
+    require_channels(len(labels), path, kind="columns")
+    return labels
+
+
 _MAX_LISTED = 12
 
 
@@ -104,32 +153,32 @@ class TextTable:
 
     Parameters
     ----------
-    section : str
-        Name of the section that holds it; empty where the file has none.
-    begun : str
-        Date and time at which the section began, in ISO 8601; empty where not stated.
     line : int
         Of the labels.
     labels : list of str
         Of the columns, without empty ones at the end.
-    units : list of str
-        Of the columns; empty where the layout has no row of units.
     rows : list of (int, list of str)
         Line and cells of each row.
-    unread : int
-        Number of lines with text after the end of the table.
     separator : str
         Between cells.
+    units : list of str
+        Of the columns; empty where the layout has no row of units.
+    section : str
+        Name of the section that holds it; empty where the file has none.
+    begun : str
+        Date and time at which the section began, in ISO 8601; empty where not stated.
+    unread : int
+        Number of lines with text after the end of the table.
     """
 
-    section: str
-    begun: str
     line: int
     labels: list[str]
-    units: list[str]
     rows: list[NumberedCells]
-    unread: int
     separator: str
+    units: list[str] = field(default_factory=list)
+    section: str = ""
+    begun: str = ""
+    unread: int = 0
 
 
 def text_tables(
@@ -196,16 +245,12 @@ def _table(
     """Table between two lines."""
     header = _header_line(lines, first, end, layout, path)
     separator = layout.separator or _detected_separator(lines[header : header + 1])
-    rows = _rows(lines, header, end, separator, layout, path)
+    is_comment = partial(_is_comment, comment=layout.comment)
+    rows = _until_blank(text_rows(lines[:end], header, separator, path, is_comment=is_comment), layout)
     line, cells = _next_row(rows, header + 1)
-    is_headless = not layout.has_labels or (len(cells) > 1 and all(_is_number(cell) for cell in cells))
-    labels = [f"column {place}" if is_headless else one_line(label) for place, label in enumerate(cells, start=1)]
-    while labels and not labels[-1]:
-        labels.pop()
-    if not labels:
-        raise InvalidInput(f"{path}: line {line}: no column names")
-    require_channels(len(labels), path, kind="columns")
-    units = [_unit(cell) for cell in _next_row(rows, line + 1)[1]] if layout.units_row else []
+    is_headless = not layout.has_labels or (len(cells) > 1 and all(map(is_number, cells)))
+    labels = labels_of_cells(cells, line, path, is_headless=is_headless)
+    units = [unit_of_cell(cell) for cell in _next_row(rows, line + 1)[1]] if layout.units_row else []
     body, unread = _body(rows, len(labels), path, allows_short_rows)
     if is_headless:
         body.insert(0, (line, cells))
@@ -234,16 +279,26 @@ def _header_line(lines: list[str], first: int, end: int, layout: TextLayout, pat
 
 def _is_row(line: str, layout: TextLayout) -> bool:
     """Whether a line is neither blank nor a comment."""
-    text = line.strip()
-    return bool(text) and not (layout.comment and text.startswith(layout.comment))
+    return bool(line.strip()) and not _is_comment(line, comment=layout.comment)
 
 
-def _is_number(cell: str) -> bool:
-    """Whether a cell holds a number, whatever its decimal sign."""
-    return any(parse_number(cell, decimal_sign=sign) is not None for sign in ".,")
+def _is_comment(line: str, *, comment: str) -> bool:
+    """Whether a line begins with the sign of a comment."""
+    return bool(comment) and line.lstrip().startswith(comment)
 
 
-def _unit(cell: str) -> str:
+def _until_blank(rows: Iterator[NumberedCells], layout: TextLayout) -> Iterator[NumberedCells | None]:
+    """Yield the rows that have a filled cell; None for a blank one after the first where it ends a table."""
+    seen = False
+    for row in rows:
+        if any(cell.strip() for cell in row[1]):
+            seen = True
+            yield row
+        elif seen and layout.ends_at_blank_line:
+            yield None
+
+
+def unit_of_cell(cell: str) -> str:
     """Unit of a cell, without brackets around all of it."""
     text = one_line(cell)
     return text[1:-1].strip() if text[:1] + text[-1:] in ("[]", "()") else text
@@ -258,29 +313,6 @@ def _detected_separator(lines: list[str]) -> str:
     """Separator that occurs most often in the line of labels."""
     line = lines[0] if lines else ""
     return max(SEPARATORS, key=lambda separator: (line.count(separator), -SEPARATORS.index(separator)))
-
-
-def _rows(
-    lines: list[str], first: int, end: int, separator: str, layout: TextLayout, path: Path
-) -> Iterator[NumberedCells | None]:
-    """Yield the rows with quoted cells that may span lines; None for a blank line after the first row.
-
-    Comments are passed over; blank lines only count where they end a table.
-    """
-    reader = csv.reader(io.StringIO("".join(lines[first:end]), newline=""), delimiter=separator, strict=True)
-    begins = first + 1
-    seen = False
-    try:
-        for cells in reader:
-            if any(cell.strip() for cell in cells):
-                if not (layout.comment and cells[0].lstrip().startswith(layout.comment)):
-                    seen = True
-                    yield begins, cells
-            elif seen and layout.ends_at_blank_line:
-                yield None
-            begins = first + reader.line_num + 1
-    except csv.Error as failure:
-        raise InvalidInput(f"{path}: line {begins}: {failure}") from None
 
 
 def _body(
