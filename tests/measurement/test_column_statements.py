@@ -60,3 +60,9 @@ def test_what_is_refused_names_its_column() -> None:
         with raises(InvalidInput, match=reason) as refused:
             mapping_of_statements(statements)
         assert refused.value.key == "A"
+
+
+def test_a_column_of_spreads_is_the_uncertainty_of_the_one_before_it() -> None:
+    columns = stated_file_columns(["COF on", "SD", "COF off"], ["", "", ""], [["0.3"], ["0.02"], ["0.4"]], None)
+    assert [column.statement for column in columns][1] == "friction_coefficient_uncertainty"
+    assert not columns[1].is_asked

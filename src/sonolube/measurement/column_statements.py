@@ -10,7 +10,16 @@ from sonolube.measurement.recordings.channels_and_parts import TIME_LABELS, name
 from sonolube.measurement.recordings.mapping import AXIS_QUANTITIES, ChannelSource, RecordingMapping, source_with_gain
 from sonolube.measurement.recordings.raw_table import numbered_labels
 from sonolube.measurement.run_columns import TEXT_NAMES
-from sonolube.measurement.run_headings import LEFT_OUT, STATES, RunHeading, fits, meaning, run_heading, state_column
+from sonolube.measurement.run_headings import (
+    LEFT_OUT,
+    STATES,
+    RunHeading,
+    fits,
+    meaning,
+    run_heading,
+    spread_headings,
+    state_column,
+)
 from sonolube.measurement.run_numbers import cell_number
 from sonolube.vocabulary import quantities
 
@@ -58,14 +67,18 @@ def stated_file_columns(
     """
     known = {} if mapping is None else _sources(mapping.for_labels(list(labels)))
     without = set() if mapping is None else set(mapping.selection.without)
+    headings = [f"{label} [{unit}]" if unit else label for label, unit in zip(labels, units, strict=True)]
+    spreads = spread_headings(labels, list(map(run_heading, headings)))
     columns = []
-    for label, own, unit, column in zip(numbered_labels(labels), labels, units, cells, strict=True):
+    for place, (label, own, unit, column) in enumerate(zip(numbered_labels(labels), labels, units, cells, strict=True)):
         filled = [cell.strip() for cell in column if cell.strip()]
         is_words = bool(filled) and not any(map(_is_number, filled[:_MAX_TEXTS]))
         if label in known:
             statement, is_asked = known[label], False
         elif label in without or not label:
             statement, is_asked = LEFT_OUT, False
+        elif place in spreads:
+            statement, is_asked = spreads[place].statement, False
         elif state_column([own], [(0, [cell]) for cell in column], ()) is not None:
             statement, is_asked = STATES, False
         elif is_words:

@@ -62,6 +62,16 @@ _WITHOUT: Final = frozenset({"off", "without", "ohne", "aus", "no", "kein", "kei
 _OF_VIBRATION: Final = frozenset(
     {"us", "ultrasound", "ultrasonic", "ultrasonics", "ultraschall", "vibration", "vibrations", "schwingung", "vib"}
 )
+_SPREAD: Final = re.compile(
+    _WORD.format(
+        r"s\.?\s?d\.?|std\.?(?:[\s_-]*dev(?:iation)?\.?)?|st\.?\s?dev\.?|stdev|standard[\s_-]*(?:deviation|error|uncertainty)"
+        r"|s\.?e\.?m\.?|st[da]?abw\.?|standard(?:abweichung|fehler|unsicherheit)|(?:mess)?unsicherheit|uncertainty|sigma"
+    )
+    + r"|\+\s?/?\s?-|±|σ",
+    re.IGNORECASE,
+)
+_OF: Final = re.compile(r"^[\s,;:_/-]*(?:of|in|for|von|der|des|für)\b|[\[(]\s*[\])]|^[\s,;:_/-]+|[\s,;:_/-]+$")
+_UNCERTAINTY_OF: Final = {"friction_ratio": "friction_reduction_uncertainty"}
 _HAVE_STATES: Final = ("friction_force", "friction_coefficient", "wear_rate")
 
 
@@ -104,6 +114,8 @@ def run_heading(label: str) -> RunHeading | None:
         return RunHeading(own[1], own[2] or "")
     if len(text) > _LONGEST:
         return None
+    if found_spread := _of_spread(text):
+        return found_spread
     if of_peaks := _of_peaks(text):
         return of_peaks
     with_unit = list(_with_unit(text))
@@ -117,6 +129,65 @@ def _has_unit_in_brackets(text: str) -> bool:
     """Whether a heading ends in brackets around a unit."""
     found = re.search(r"[\[(]([^\[\]()]*)[\])]\Z", text)
     return found is not None and found[1].strip() in _UNITS
+
+
+def uncertainty_of(name: str) -> str:
+    """Quantity of the standard uncertainty of another; empty where the vocabulary has none."""
+    own = _UNCERTAINTY_OF.get(name, f"{name}_uncertainty")
+    return own if own in quantities() else ""
+
+
+def is_spread(label: str) -> bool:
+    """Whether a heading is that of a standard deviation or uncertainty, but for a name of the vocabulary."""
+    own = _OWN.fullmatch(" ".join(label.split()))
+    return len(label) <= _LONGEST and _SPREAD.search(label) is not None and not (own and own[1] in quantities())
+
+
+def _without_spread(text: str) -> str:
+    """Rest of the heading of a spread: of what it is, and its unit."""
+    rest = _SPREAD.sub(" ", text, count=1).strip()
+    return _OF.sub("", _OF.sub("", rest)).strip()
+
+
+def _of_spread(text: str) -> RunHeading | None:
+    """Uncertainty of the quantity that the heading of a spread names; None where it names none that has one."""
+    rest = _without_spread(text) if is_spread(text) else ""
+    owner = run_heading(rest) if rest else None
+    own = uncertainty_of(owner.name) if owner is not None and owner.gain == 1 else ""
+    return RunHeading(own, owner.unit) if own and owner is not None else None
+
+
+def spread_headings(labels: Sequence[str], meanings: Sequence[RunHeading | None]) -> dict[int, RunHeading]:
+    """Uncertainties that columns of spreads hold, by their places, where it is clear to which column each belongs.
+
+    One that names a quantity belongs to that; one that names none to the column before it, unless that stands behind
+    another result without a spread, whose it may be as well. The unit is its own, else that of the column. Shares of a
+    pure number may be of the number or of its value, and are not clear.
+    """
+    spread = [is_spread(label) for label in labels]
+    found: dict[int, RunHeading] = {}
+    for place in (at for at, each in enumerate(spread) if each):
+        own = _of_spread(" ".join(labels[place].split()))
+        rest = _without_spread(" ".join(labels[place].split())).strip("[]() ")
+        if own is not None:
+            owner = next((each for each in meanings if each and uncertainty_of(each.name) == own.name), None)
+        elif (rest and rest not in _UNITS) or place == 0 or spread[place - 1]:
+            continue
+        else:
+            owner = meanings[place - 1]
+            before = meanings[place - 2] if place > 1 and not spread[place - 2] else None
+            if owner is None or (owner.name in _RESULTS and before is not None and before.name in _RESULTS):
+                continue
+        unit = (own.unit if own else rest) or (owner.unit if owner else "")
+        name = own.name if own else uncertainty_of(owner.name) if owner else ""
+        heading = RunHeading(name, unit)
+        is_share = unit in _PARTS and (owner is None or owner.unit not in _PARTS)
+        if name and fits(heading) and not is_share and heading.name not in {each.name for each in found.values()}:
+            found[place] = heading
+    return found
+
+
+_RESULTS: Final = tuple(column.name for column in RUN_COLUMNS if column.is_result)
 
 
 def fits(found: RunHeading) -> bool:
@@ -335,7 +406,13 @@ def stated_columns(table: TextTable, statements: Mapping[str, str], path: Path) 
     for place, label in enumerate(labels):
         if found[label] is None and _has_its_units(table, place):
             found[label] = run_heading(table.labels[place])
-    found |= {column_of_label(known, label, path): meaning(text, label) for label, text in statements.items()}
+    stated = {column_of_label(known, label, path): meaning(text, label) for label, text in statements.items()}
+    found |= stated
+    meanings = [each if isinstance(each, RunHeading) else None for each in found.values()]
+    spreads = spread_headings(table.labels, meanings)
+    for place, label in enumerate(labels):
+        if is_spread(table.labels[place]) and label not in stated:
+            found[label] = spreads.get(place, LEFT_OUT)
     if (place_of_states := state_column(table.labels, table.rows, statements)) is not None:
         found[labels[place_of_states]] = STATES
     return found

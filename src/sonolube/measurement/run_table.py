@@ -27,11 +27,16 @@ from sonolube.measurement.recordings.text_tables import (
 from sonolube.measurement.run_columns import DIRECTION_COLUMN, DIRECTION_WORDS, TEXT_NAMES, heading
 from sonolube.measurement.run_headings import (
     LEFT_OUT,
+    RunHeading,
+    fits,
+    is_spread,
     is_without_vibration,
     likely_statements,
     meaning_at_stake,
     run_heading,
+    spread_headings,
     state_column,
+    uncertainty_of,
 )
 from sonolube.measurement.run_layout import LaidOut, laid_out, laid_out_text
 from sonolube.measurement.run_numbers import OF_A_DIGIT, CellNumber, cell_number, decimal_sign_of
@@ -39,7 +44,6 @@ from sonolube.measurement.spreadsheets import is_spreadsheet, spreadsheet_rows
 from sonolube.text.units import unit_description
 from sonolube.vocabulary import quantities
 
-_UNCERTAINTY_OF: Final = {"friction_ratio": "friction_reduction_uncertainty"}
 _NO_HEADING: Final = re.compile(r"column \d+")
 _NO_NUMBER: Final = CellNumber(float("nan"), float("nan"))
 _ARCHIVE: Final = b"PK\x03\x04"
@@ -199,11 +203,19 @@ def assigned_columns(
     columns = {name: found.values for name, found in read.items()}
     stated, unused = _stated_uncertainties(read, columns)
     halved = tuple(_gain_caveat(each) for each in (*mapped, *others) if _is_of_other_peaks(each))
+    spread = tuple(
+        f"{_quoted(each.source.column)} is taken as the {each.name.replace('_', ' ')}"
+        for each in (*mapped, *others)
+        if is_spread(each.source.column)
+    )
+    columns |= {  # a spread of zero is one below its last digit
+        name: np.maximum(columns[name], found.digits) for name, found in read.items() if name.endswith("_uncertainty")
+    }
     return RunTable(
         columns=columns | stated,
         texts=texts | ({f"{DIRECTION_COLUMN}_word": directions} if any(directions) else {}),
         lines=[number for number, _ in rows],
-        caveats=(*summaries, *halved, *unused, *left_out_caveat(left_out)),
+        caveats=(*summaries, *halved, *spread, *unused, *left_out_caveat(left_out)),
         digits={name: found.digits for name, found in read.items()},
         without=None if state is None else np.array([is_without_vibration(cells, state) for _, cells in rows]),
     )
@@ -218,8 +230,8 @@ def _stated_uncertainties(
     for name, found in read.items():
         if not np.isfinite(found.uncertainties).any():
             continue
-        own = _UNCERTAINTY_OF.get(name, f"{name}_uncertainty")
-        if own in columns or own not in quantities():
+        own = uncertainty_of(name)
+        if own in columns or not own:
             caveats.append(f"the uncertainties behind {name} are left out")
         else:
             stated[own] = found.uncertainties
@@ -276,11 +288,16 @@ def _by_headings(
     columns: list[_Column] = []
     left_out: list[str] = []
     known: dict[str, str] = {}
+    spreads = _spreads(labels, mapped)
     for place, (label, numbered) in enumerate(zip(labels, numbered_labels(labels), strict=True)):
         if place in places or place == state:
             continue
-        found = run_heading(label)
-        if not without.isdisjoint((label, numbered)) or (found is not None and found.name in names):
+        found = spreads.get(place) or run_heading(label)
+        if (
+            not without.isdisjoint((label, numbered))
+            or (found is not None and found.name in names)
+            or (is_spread(label) and place not in spreads)
+        ):
             left_out.append(numbered)
         elif found is not None and found.name == "time" and not _has_numbers(rows, place):
             left_out.append(numbered)  # of the day
@@ -295,6 +312,15 @@ def _by_headings(
             known[found.name] = label
             columns.append(_Column(found.name, place, replace(found.source(label), unit=found.unit)))
     return columns, left_out
+
+
+def _spreads(labels: Sequence[str], mapped: Sequence[_Column]) -> dict[int, RunHeading]:
+    """Uncertainties that columns of spreads hold, by their places; none of a column with a calibration."""
+    meanings = [found if (found := run_heading(label)) is not None and fits(found) else None for label in labels]
+    for each in mapped:
+        source = each.source
+        meanings[each.place] = None if source.is_calibrated else RunHeading(each.name, source.unit or "")
+    return spread_headings(labels, meanings)
 
 
 def _has_numbers(rows: Sequence[NumberedCells], place: int) -> bool:
