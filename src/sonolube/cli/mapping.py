@@ -9,6 +9,7 @@ from sonolube.cli.generated import command_of
 from sonolube.errors import InvalidInput
 from sonolube.measurement.column_statements import mapping_of_statements
 from sonolube.measurement.export_columns import export_with_times
+from sonolube.measurement.recordings.reader import recipe_of_runs
 from sonolube.measurement.run_headings import LEFT_OUT, samples, stated_columns
 from sonolube.measurement.run_table import run_text
 from sonolube.tasks.table import task_named
@@ -29,6 +30,8 @@ def _completed(given: dict[str, Any], typed: Mapping[str, Any]) -> dict[str, Any
                 answers[each.label] = _asked(each.label, list(each.cells))
         return given | {"column": answers}
     table, _ = run_text(path)
+    if not answers and recipe_of_runs(Path(path), table.labels) is not None:
+        return given
     for label, found in stated_columns(table, answers, path).items():
         if found is None:
             answers[label] = _asked(label, samples(table, label))

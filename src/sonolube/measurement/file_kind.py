@@ -7,7 +7,7 @@ from typing import Final, Literal
 from sonolube.errors import InvalidInput
 from sonolube.measurement.impedance.spectrum import IMPEDANCE_FORMATS, text_lines
 from sonolube.measurement.measured_files import HEAD_SIZE, first_lines, read_head
-from sonolube.measurement.recordings.reader import RECORDING_FORMATS, recognised_mapping
+from sonolube.measurement.recordings.reader import RECORDING_FORMATS, recipe_of_runs, recognised_mapping
 from sonolube.measurement.recordings.text_recordings import UTF_16_MARKS
 from sonolube.measurement.recordings.text_tables import decoded_content
 from sonolube.measurement.run_columns import RUN_COLUMNS
@@ -88,6 +88,8 @@ def _is_table_of_runs(path: Path) -> bool:
     except InvalidInput:
         return False
     names = {found.name for label in table.labels if (found := run_heading(label)) is not None}
+    if (recipe := recipe_of_runs(path, table.labels)) is not None:
+        names = {*names, *recipe.channels}
     if not names.isdisjoint(_AXES):
         return False
     return not names.isdisjoint(_OF_RUNS) or (_FORCE in names and not names.isdisjoint(_SETTINGS))

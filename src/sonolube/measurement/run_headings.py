@@ -476,3 +476,12 @@ def mapping_of_columns(table: TextTable, columns: Mapping[str, Meaning], *, deci
         selection=Selection(without=tuple(label for label, found in columns.items() if found == LEFT_OUT)),
         text=TextLayout(lines_to_skip=table.line - 1, decimal_sign=decimal_sign),
     )
+
+
+def columns_of_mapping(table: TextTable, mapping: RecordingMapping) -> dict[str, Meaning]:
+    """Meaning of each column by a mapping of its label, the reverse of `mapping_of_columns`; others are left out."""
+    labels = numbered_labels(table.labels)
+    known = mapping.for_labels(table.labels)
+    sources = {**known.channels, **({known.axis_quantity: known.axis} if known.axis else {})}
+    found = {source.column: RunHeading(name, source.unit or "", source.gain) for name, source in sources.items()}
+    return {label: found.get(label, LEFT_OUT) for label in labels if label}

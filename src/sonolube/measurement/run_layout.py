@@ -193,7 +193,8 @@ def _heads(rows: Sequence[NumberedCells], *, is_fixed: bool) -> _Heads:
     for first in range(1 if is_fixed else min(len(rows), _LOOKED_AT)):
         for count in range(1, _MAX_ROWS_OF_HEADS + 1):
             over = [list(map(one_line, cells)) for _, cells in rows[first : first + count]]
-            if len(over) < count or (count > 1 and any(map(_is_number, over[-1]))):
+            is_title = count > 1 and not any(over[0][1:])
+            if len(over) < count or is_title or (count > 1 and any(map(_is_number, over[-1]))):
                 break
             labels = over[0] if count == 1 else _joined(over[0], over[1])
             known = _count(labels)

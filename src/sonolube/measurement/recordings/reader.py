@@ -6,7 +6,7 @@ A format is one class and one line of the table; detection, messages and documen
 import hashlib
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cache
 from importlib.resources import files
@@ -172,6 +172,17 @@ def keep_recipe(name: str, mapping: RecordingMapping, *, labels: str) -> Path:
     text = replace(mapping.text, lines_to_skip=0)  # the lines above the labels differ from file to file
     known = replace(mapping, name=name, text=text, recognised_by=rf"(?m)^\s*{pattern}\s*$")
     return write_atomically(user_state_folder() / _RECIPES / f"{name}.toml", mapping_toml(known))
+
+
+def labels_of_runs(labels: Sequence[str]) -> str:
+    """Line by which recipes know a table of runs with these labels, however its file separates them."""
+    return f"runs: {'; '.join(labels)}"
+
+
+def recipe_of_runs(path: Path, labels: Sequence[str]) -> RecordingMapping | None:
+    """Recipe for the tables of runs with these labels; None where there is none."""
+    fitting = (known for known in recipes(path).values() if known.recognised_by)
+    return next((known for known in fitting if re.search(known.recognised_by, labels_of_runs(labels))), None)
 
 
 def mapping_by_name(text: str) -> RecordingMapping:

@@ -1,5 +1,6 @@
 """Task `mapping`: quantity and unit of each column of a text file, as a file for `--mapping`."""
 
+import re
 from collections.abc import Mapping, Sequence
 from math import isfinite
 from pathlib import Path
@@ -9,12 +10,13 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.export_columns import ExportColumns, export_mapping, export_with_times, recording_text
 from sonolube.measurement.measured_runs import read_runs, run_caveats, runs_text
 from sonolube.measurement.recordings.mapping import RecordingMapping, mapping_toml
-from sonolube.measurement.recordings.reader import keep_recipe, read_recording
+from sonolube.measurement.recordings.reader import keep_recipe, labels_of_runs, read_recording, recipe_of_runs
 from sonolube.measurement.recordings.text_tables import decoded_text
 from sonolube.measurement.run_headings import (
     LEFT_OUT,
     Meaning,
     RunHeading,
+    columns_of_mapping,
     likely_statements,
     mapping_of_columns,
     samples,
@@ -47,7 +49,7 @@ def mapping(
     ] = None,
     instrument: Annotated[
         str | None,
-        Parameter("Keep the mapping under this name: later exports of its labels are read by it unasked.", "NAME"),
+        Parameter("Keep the mapping under this name: later files of the same labels are read by it unasked.", "NAME"),
     ] = None,
 ) -> "MappingAnswer":
     """Quantity and unit of each column of a table, by headings and answers to questions, as a file for --mapping.
@@ -61,12 +63,14 @@ def mapping(
     >>> answer.object()["columns"]["sliding_speed [mm/s]"]
     {'quantity': 'sliding_speed', 'unit': 'mm/s'}
     """
-    path = file_path(file)
+    path, name = file_path(file), f"{file_stem(file)}-mapping.toml"
     if (export := export_with_times(path)) is not None:
         refuse_unused("decimal_sign", because="for the export of a recording; it is for tables of runs")
-        return _of_export(path, export, column or {}, instrument, f"{file_stem(file)}-mapping.toml")
-    refuse_unused("instrument", because="for a table of runs; it is for exports of recordings")
-    table, caveats = run_text(path)
+        return _of_export(path, export, column or {}, instrument, name)
+    table, _ = run_text(path)
+    recipe = None if column or decimal_sign else recipe_of_runs(path, table.labels)
+    if recipe is not None:
+        return _of_runs(path, recipe, columns_of_mapping(table, recipe), instrument, name)
     columns = {}
     for label, found in stated_columns(table, column or {}, path).items():
         if found is None:
@@ -79,15 +83,31 @@ def mapping(
         columns[label] = found
     _require_distinct(columns, path)
     known = mapping_of_columns(table, columns, decimal_sign=decimal_sign or "")
+    return _of_runs(path, known, columns, instrument, name)
+
+
+def _of_runs(
+    path: Path, known: RecordingMapping, columns: Mapping[str, Meaning], instrument: str | None, name: str
+) -> "MappingAnswer":
+    """Mapping of a table of runs, kept as a recipe for tables of its labels where it has a name."""
+    table, caveats = run_text(path)
     runs, refusal = (None, "") if known.axis is not None else _runs(path, known)
+    told = [*(run_caveats(runs) if runs is not None else caveats), *([refusal] if refusal else [])]
+    if known.recognised_by:
+        told.append(f"read by the recipe {known.name!r}")
+    if instrument is not None:
+        if any(re.fullmatch(r"column \d+", label) for label in table.labels):
+            raise InvalidInput(f"{path}: has no headings, by which later tables could be recognised", key="instrument")
+        kept = keep_recipe(instrument, known, labels=labels_of_runs(table.labels))
+        told.append(f"kept as {kept}")
     return MappingAnswer(
         rows=len(table.rows),
         cells={label: "; ".join(samples(table, label)) for label in columns},
         columns=columns,
         known=known,
         read=runs,
-        told=(*(run_caveats(runs) if runs is not None else caveats), *([refusal] if refusal else [])),
-        name=f"{file_stem(file)}-mapping.toml",
+        told=told,
+        name=name,
     )
 
 
