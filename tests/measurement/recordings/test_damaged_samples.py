@@ -68,3 +68,14 @@ def test_a_recording_says_so_and_keeps_the_sample(tmp_path: Path) -> None:
     recording = read_recording(tmp_path / "damaged.csv")
     assert "friction_force is 1e+10 N at time [s] = 0.5" in recording.attrs["caveats"]
     assert recording["friction_force"].values[50] == 1e10
+
+
+def test_a_damaged_sample_among_many_of_noise_is_found_at_any_place() -> None:
+    values = np.random.default_rng(1).normal(2.0, 0.1, 50_000)
+    for place, value in ((0, 40.0), (31_250, -40.0), (49_999, 400.0)):
+        damaged = values.copy()
+        damaged[place] = value
+        told = damaged_sample_caveats("f", damaged, unit="N", axis=np.arange(50_000.0), axis_label="time [s]")
+        assert len(told) == 1
+        assert f"is {value:.3g} N at time [s] = {place:.6g}," in told[0]
+    assert damaged_sample_caveats("f", values, unit="N", axis=np.arange(50_000.0), axis_label="time [s]") == ()

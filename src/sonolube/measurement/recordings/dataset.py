@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sonolube import __version__
 from sonolube.checks import Floats
@@ -42,6 +43,7 @@ _MOST = 3  # samples of a channel that can be damaged; more are a signal
 _REACH = 20.0  # distance from the median over the largest of all other samples
 _FEWEST = 20  # samples of a channel of which one can be judged
 _STANDS = 0.02  # of the samples at one end of the range, from which a channel is saturated
+_SOME = 1000  # samples by which most channels are told to have no damaged one
 _VALUES = 50  # different ones, from which a channel is neither switched nor coarse
 _VELOCITY, _SPEEDS = "relative_velocity", ("sliding_speed", "rotation_speed")
 _SAME_SIGN = 0.2  # of the larger end of a range, up to which the other one is noise or an error of the zero
@@ -56,7 +58,7 @@ def damaged_sample_caveats(name: str, values: Floats, *, unit: str, axis: Floats
     as a trigger.
     """
     known = np.flatnonzero(np.isfinite(values))
-    if known.size < _FEWEST:
+    if known.size < _FEWEST or _is_spread(values, known):
         return ()
     with np.errstate(over="ignore"):
         distance = np.abs(values[known] - np.median(values[known]))
@@ -70,6 +72,17 @@ def damaged_sample_caveats(name: str, values: Floats, *, unit: str, axis: Floats
         " from its median as every other sample: a damaged sample, which each mean contains; leave its line out"
         for place in known[np.sort(np.argsort(distance)[-count:])]
     )
+
+
+def _is_spread(values: Floats, known: NDArray[np.int64]) -> bool:
+    """Whether more samples than can be damaged lie apart, by some of them: the rest of a damaged channel does not.
+
+    All but `_MOST` of that lie within the largest distance over `_REACH` of the median, and so do those of any part.
+    """
+    some = np.sort(values[known[:: max(1, known.size // _SOME)]])
+    with np.errstate(over="ignore"):
+        widest = 2 / _REACH * (np.fmax.reduce(values) - np.fmin.reduce(values))
+        return bool(some[-1 - _MOST] - some[_MOST] > widest)
 
 
 def missing_sample_caveat(name: str, values: Floats, *, axis: Floats, axis_label: str) -> tuple[str, ...]:
@@ -99,7 +112,7 @@ def saturation_caveat(name: str, values: Floats, *, unit: str) -> tuple[str, ...
     if name.endswith(_SET_POINT) or known.size < _FEWEST:
         return ()
     for end, word in ((known.max(), "highest"), (known.min(), "lowest")):
-        share = float(np.mean(known == end))
+        share = np.count_nonzero(known == end) / known.size
         if share > _STANDS and np.unique(known).size > _VALUES:
             return (
                 f"{name} stands at its {word} value, {end:.4g} {unit}, in {share:.0%} of the samples: its sensor or"
@@ -191,6 +204,8 @@ def _with_friction_positive(variables: _Variables) -> tuple[_Variables, list[str
     changed, caveats = dict(variables), []
     for name in set(FRICTION) & variables.keys():
         axis, values, attributes = variables[name]
+        if not np.any(values < 0):
+            continue
         low, high = _ends(values)
         if np.count_nonzero(np.isfinite(values)) >= _FEWEST and low < 0 and high < _SAME_SIGN * -low:
             gain, offset = (-float(attributes[f"calibration_{each}"]) for each in ("gain", "offset"))
@@ -324,12 +339,12 @@ def _channel(
     """Calibrated values of a channel in SI, and its attributes."""
     column = column_of_label(table.by_label, source.column, path)
     values = column.values
-    excessive = np.abs(values) > _LARGEST_READING
-    if excessive.any():
-        row = int(np.argmax(excessive))
+    largest = max(np.fmax.reduce(values), -np.fmin.reduce(values)) if values.size else 0.0
+    if largest > _LARGEST_READING:
+        row = int(np.argmax(np.abs(values) > _LARGEST_READING))
         fault = "infinite" if np.isinf(values[row]) else f"{values[row]:g}, beyond any sensor"
         raise InvalidInput(f"{path}: {table.place(row)}: {column.label!r} is {fault}")
-    if values.size and not partial and np.isnan(values).all():
+    if not partial and np.isnan(largest):
         raise InvalidInput(f"{path}: {column.label!r} holds no value among {values.size}")
     stated = source.unit if source.unit is not None else _name_and_unit(column)[1]
     known = quantities().get(name)
@@ -411,10 +426,10 @@ def _require_one_axis(axis: RawColumn, table: RawTable, path: Path) -> None:
 
 def _axis_column(column: RawColumn, table: RawTable, path: Path, quantity: str, source: ChannelSource) -> Floats:
     """Calibrated values of the axis column in SI; refuse missing and infinite ones."""
-    values = column.values * source.gain + source.offset
-    missing = ~np.isfinite(values)
-    if missing.any():
-        raise InvalidInput(f"{path}: {table.place(int(np.argmax(missing)))}: {column.label!r} is not a number")
+    values = column.values * source.gain + source.offset if source.is_calibrated else column.values
+    known = np.isfinite(values)
+    if not known.all():
+        raise InvalidInput(f"{path}: {table.place(int(np.argmin(known)))}: {column.label!r} is not a number")
     stated = source.unit if source.unit is not None else column.unit
     if stated is None:
         return values

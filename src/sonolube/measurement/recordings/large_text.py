@@ -7,6 +7,7 @@ from collections.abc import Collection, Sequence
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 from sonolube.measurement.recordings.text_tables import TextTable
@@ -14,7 +15,8 @@ from sonolube.measurement.recordings.text_tables import TextTable
 LARGE = 1 << 20
 """Bytes from which a text is large."""
 
-_LOOKED_AT = 1 << 16  # bytes of the beginning and of the middle
+_BEGINNING, _MIDDLE = 1 << 15, 1 << 13  # bytes by which the layout is told
+_PART = 1 << 18  # bytes
 
 
 def ends_of_large_text(path: Path) -> str | None:
@@ -23,9 +25,9 @@ def ends_of_large_text(path: Path) -> str | None:
     if size < LARGE:
         return None
     with path.open("rb") as stream:
-        head = stream.read(_LOOKED_AT)
+        head = stream.read(_BEGINNING)
         stream.seek(size // 2)
-        middle = stream.read(_LOOKED_AT)
+        middle = stream.read(_MIDDLE)
     if b"\n" not in head:
         return None
     ends = head.rpartition(b"\n")[0] + b"\n" + middle.partition(b"\n")[2].rpartition(b"\n")[0] + b"\n"
@@ -60,11 +62,18 @@ def numbers_of_large_text(
         )
     except (ValueError, OverflowError):  # ParserError is one
         return None
-    content = path.read_bytes()
-    separators = content.count(table.separator.encode(), _end_of_line(content, first - 1))
+    content = np.memmap(path, np.uint8, mode="r")
+    above = content[:_BEGINNING].tobytes()
+    separators = _count(content[_end_of_line(above, first - 1) :], ord(table.separator))
     if separators != len(frame) * (len(table.rows[0][1]) - 1):
         return None
     return [frame[place].to_numpy() for place in places]
+
+
+def _count(content: NDArray[np.uint8], byte: int) -> int:
+    """Number of bytes of a value, counted in parts that a processor keeps at hand."""
+    parts = (content[at : at + _PART] for at in range(0, content.size, _PART))
+    return sum(int(np.count_nonzero(part == byte)) for part in parts)
 
 
 def _end_of_line(content: bytes, line: int) -> int:
