@@ -171,7 +171,7 @@ MODES = {
             "--decay-length": "2um",
             "--stiffness": "1.5MN/m",
         },
-        ("--force",),
+        ("--force", "--folder"),
     ),
     "new on a track of a radius": Mode(
         "new",

@@ -11,7 +11,17 @@ import typer
 
 from sonolube.cli.console import options
 from sonolube.cli.console.delivery import deliver
-from sonolube.cli.console.options import ContinuedFolder, OutputFile, OutputFolder, operator_arguments, progress
+from sonolube.cli.console.options import (
+    AnswersFolder,
+    ContinuedFolder,
+    OutputFile,
+    OutputFolder,
+    RigPath,
+    answers_folder,
+    is_given,
+    operator_arguments,
+    progress,
+)
 from sonolube.errors import InvalidInput
 from sonolube.execution.compilation import few_points
 from sonolube.tasks.parameters import (
@@ -30,7 +40,7 @@ from sonolube.tasks.table import Task
 from sonolube.tasks.task import argument_names, marks_of
 from sonolube.text.units import unit_description
 
-_RIG_HELP = "The rig, as a TOML file."
+_RIG_HELP = "The rig, as a TOML file or its folder."
 _RIG = {"load": options.Load, "amplitude": options.Amplitude, "changes": options.Changes}
 _OUT_HELP = "Folder for report, figures and data."
 _KEEP_HELP = (
@@ -93,13 +103,12 @@ def command_of(
     keep = marks.get("keep")
 
     def run(context: typer.Context, **typed: Any) -> None:
-        given = frozenset(name for name in typed if _is_given(context, name))
+        given = frozenset(name for name in typed if is_given(context, name))
+        out = answers_folder(next((typed[each.name] for each in inputs if isinstance(each.mark, RigParameter)), None))
         with argument_names(lambda name: names.get(name, name)), observed(progress), few_points():
             arguments = {each.name: each.value(typed, names) for each in inputs if each.is_given(given)}
             if keep is not None:
-                arguments["keep"] = (
-                    typed["keep"] if "keep" in typed else typed["out"] or (lambda name: options.OUT / name)
-                )
+                arguments["keep"] = typed["keep"] if "keep" in typed else typed["out"] or (lambda name: out / name)
             if "operator" in marks:
                 arguments |= operator_arguments()
             answer = function(**(arguments if complete is None else complete(arguments, typed)))
@@ -107,7 +116,7 @@ def command_of(
                 return delivery(answer, typed)
             return deliver(
                 answer,
-                folder=typed.get("out") or (None if task.writes_on_request else Path(task.folder or options.OUT)),
+                folder=typed.get("out") or (None if task.writes_on_request else Path(task.folder or out)),
                 report=typed.get("report"),
                 as_json=typed["json"],
                 brief=typed.get("brief", False),
@@ -138,7 +147,7 @@ def _input(given: Argument, mark: Mark, writes: str, *, is_required: bool) -> _I
         flag = f"--{name}" if given.kind is Argument.KEYWORD_ONLY else ""
         about: dict[str, Any] = {"metavar": "RIG.toml", "help": _RIG_HELP}
         info = typer.Option(flag, **about) if flag else typer.Argument(**about)
-        path: Any = Annotated[Path | None, info] if mark.is_optional else Annotated[Path, info]
+        path: Any = Annotated[Path | None, info, RigPath()] if mark.is_optional else Annotated[Path, info, RigPath()]
         default = None if mark.is_optional else Argument.empty
         own = [argument(name, path, default)]
         kinds = {key: each for key, each in _RIG.items() if key not in mark.without}
@@ -198,7 +207,7 @@ def _delivery(task: Task, marks: Mapping[str, Mark]) -> list[Argument]:
         arguments.append(argument("keep", own, None))
     if task.writes and "out" not in marks:
         about = typer.Option(help=_KEEP_HELP if keeps else _OUT_HELP)
-        folder: Any = Annotated[Path | None, about, OutputFolder(task.writes)]
+        folder: Any = Annotated[Path | None, about, AnswersFolder(task.writes)]
         default = None if keeps or task.folder or task.writes_on_request else options.OUT
         arguments.append(argument("out", folder, default))
     if task.has_report:
@@ -208,11 +217,6 @@ def _delivery(task: Task, marks: Mapping[str, Mark]) -> list[Argument]:
     if any(isinstance(mark, RigParameter) for mark in marks.values()):
         arguments.append(argument("brief", options.Brief, False))
     return [*arguments, argument("json", options.Json, False)]
-
-
-def _is_given(context: typer.Context, name: str) -> bool:
-    """Whether an argument was typed."""
-    return getattr(context.get_parameter_source(name), "name", "DEFAULT") != "DEFAULT"
 
 
 def _by_key(flag: str, form: str, entries: Sequence[str]) -> dict[str, str]:

@@ -1,7 +1,7 @@
 """Command `new`: the task with questions on a terminal for what the options leave out, and one file to write."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Final
 
@@ -14,6 +14,7 @@ from sonolube.errors import InvalidInput
 from sonolube.facts.materials import material
 from sonolube.rig.new_rig.rig_text import is_soft
 from sonolube.rig.new_rig.stated_text import pin_shape, reader, rotation_of, speed_of, surface_of, vibration_of
+from sonolube.storage.files import expect_file
 from sonolube.tasks.predict.new import DEFAULT_FINISH, DEFAULT_SHAPE, NewRig, refuse_two_of_one
 from sonolube.tasks.table import task_named
 
@@ -53,8 +54,14 @@ _INSTEAD: Final = {
 
 
 def _completed(given: dict[str, Any], typed: Mapping[str, Any]) -> dict[str, Any]:
-    """Arguments with the answers to questions for those that are missing, where the file may be written."""
-    if typed["out"].exists() and not typed["force"]:
+    """Arguments with the answers to questions for those that are missing, where the file or folder may be written."""
+    if typed["folder"] and typed["force"]:
+        raise InvalidInput("--force has no meaning with --folder, which replaces nothing")
+    if typed["folder"] and _place(typed).exists():
+        raise InvalidInput(f"{_place(typed)}: exists; name a new folder")
+    if typed["out"].is_dir() and not typed["folder"]:
+        raise InvalidInput(f"{typed['out']}: is a folder; name a file, or a new folder with --folder")
+    if not typed["folder"] and typed["out"].exists() and not typed["force"]:
         raise InvalidInput(f"{typed['out']}: exists; name another file, or give --force to replace it")
     refuse_two_of_one(given)
     missing = [name for name in _NEEDED if not _is_known(name, given)]
@@ -106,18 +113,45 @@ def _readable_speed(given: Mapping[str, Any]) -> Callable[[str], object]:
     return read
 
 
-def _delivered(answer: NewRig, typed: Mapping[str, Any]) -> None:
-    """Write the rig file, and print the answer."""
+def _place(typed: Mapping[str, Any]) -> Path:
+    """Path of the file, or of the folder, that is written."""
     out: Path = typed["out"]
+    return out.with_suffix("") if typed["folder"] and out == _FILE else out
+
+
+def _delivered(answer: NewRig, typed: Mapping[str, Any]) -> None:
+    """Write the rig file or the folder of the rig, and print the answer."""
+    out = _place(typed)
+    if typed["folder"]:
+        answer.write_folder(out)
     deliver(replace(answer, target=out), folder=out.parent, as_json=typed["json"])
 
 
-_OUT: Final = Annotated[Path, typer.Argument(metavar="[OUT.toml]", help="File to write."), OutputFile()]
+@dataclass(frozen=True, slots=True)
+class _FileOrFolder(OutputFile):
+    """Marks the path of a file, or of a folder that is refused where the arguments are read."""
+
+    def expect(self, path: Path, stems: Mapping[str, str]) -> None:
+        """Raise InvalidInput if the file cannot be written."""
+        if not path.is_dir():
+            expect_file(path)
+
+
+_FILE: Final = Path("rig.toml")
+_OUT: Final = Annotated[
+    Path, typer.Argument(metavar="[OUT.toml]", help="File to write; with --folder the folder."), _FileOrFolder()
+]
+_FOLDER: Final = Annotated[
+    bool,
+    typer.Option(
+        "--folder", help="Make a folder with the rig, a table of own runs, and places for recipes, records and answers."
+    ),
+]
 _FORCE: Final = Annotated[bool, typer.Option("--force", help="Replace the file where it exists.")]
 
 new = command_of(
     task_named("new"),
-    more=(argument("out", _OUT, Path("rig.toml")), argument("force", _FORCE, False)),
+    more=(argument("out", _OUT, _FILE), argument("folder", _FOLDER, False), argument("force", _FORCE, False)),
     complete=_completed,
     delivery=_delivered,
 )

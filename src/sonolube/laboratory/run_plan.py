@@ -22,6 +22,7 @@ from sonolube.laboratory.supervision import LATE
 from sonolube.operating_system import home_folder, process_start, remove_file
 from sonolube.prediction.evidence_posterior import EvidencePosterior
 from sonolube.rig import Rig
+from sonolube.rig.file.rig_folder import rig_file
 from sonolube.storage.files import is_locked, locked_folder, write_atomically
 from sonolube.storage.user_files import input_text
 from sonolube.text.units import format_si
@@ -289,7 +290,8 @@ def begin_record(
 
 def _files(request: RunRequest) -> dict[str, str]:
     """Texts of the files that the run was given, by the name under which they are kept."""
-    given = {"rig.toml": None if request.rig is None else request.rig.file, "devices.toml": request.device_file}
+    rig = None if request.rig is None else request.rig.file
+    given = {"rig.toml": None if rig is None else rig_file(rig), "devices.toml": request.device_file}
     return {name: input_text(path) for name, path in given.items() if path is not None}
 
 

@@ -73,6 +73,8 @@ class RunTable:
         Standard uncertainties of the columns by their digits as they are written, in SI.
     without : ndarray of bool, shape (rows,), or None
         Whether a column says that a row is without vibration; None where no column says so.
+    unread : tuple of str
+        Headings of columns that are neither quantities nor texts here.
     """
 
     columns: Mapping[str, Floats]
@@ -81,6 +83,7 @@ class RunTable:
     caveats: tuple[str, ...] = ()
     digits: Mapping[str, Floats] = field(default_factory=lambda: MappingProxyType({}))
     without: NDArray[np.bool_] | None = None
+    unread: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,6 +116,11 @@ def run_table(path: Path, *, mapping: RecordingMapping | None = None) -> RunTabl
         place="column" if found.is_turned else "line",
     )
     return replace(columns, caveats=(*caveats, *columns.caveats))
+
+
+def unread_columns(path: Path) -> tuple[str, ...]:
+    """Headings of a table of runs whose cells are not among its columns."""
+    return run_table(path).unread
 
 
 def run_text(path: Path, mapping: RecordingMapping | None = None) -> tuple[TextTable, tuple[str, ...]]:
@@ -221,6 +229,7 @@ def assigned_columns(
         caveats=(*summaries, *halved, *spread, *unused, *left_out_caveat(left_out)),
         digits={name: found.digits for name, found in read.items()},
         without=None if state is None else np.array([is_without_vibration(cells, state) for _, cells in rows]),
+        unread=(*left_out, *(() if state is None else (labels[state],))),
     )
 
 

@@ -258,7 +258,7 @@ class Rig:
 
     @property
     def file(self) -> Path | None:
-        """Path of the file that the rig was read from; None where there is none."""
+        """Path of the file, or of the folder, that the rig was read from; None where there is none."""
         return Path(self._entries.path) if self._entries is not None and self._entries.path else None
 
     @property
@@ -270,7 +270,7 @@ class Rig:
     def name(self) -> str:
         """Name for the rig's files: that of its own without ending, or its title in plain characters."""
         if self.file is not None:
-            return self.file.stem
+            return self.file.resolve().name if self.file.is_dir() else self.file.stem
         return "-".join("".join(each if each.isalnum() else " " for each in self.title.lower()).split()) or "rig"
 
     def table(self) -> list[tuple[str, str]]:

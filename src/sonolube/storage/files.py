@@ -2,8 +2,10 @@
 
 import io
 import os
+import shutil
 import stat
-from collections.abc import Iterator, Sequence
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from fnmatch import fnmatchcase
 from functools import partial
@@ -88,6 +90,41 @@ def write_atomically(path: Path, content: bytes | str, *, is_private: bool = Fal
         file.write(content.encode() if isinstance(content, str) else content)
         file.complete()
     return path
+
+
+def write_folder(folder: Path, contents: Mapping[str, str | None]) -> Path:
+    """Make a folder with files, and with folders where the content is None; whole, or not at all.
+
+    Raises
+    ------
+    InvalidInput
+        If something of this name exists, or it cannot be written.
+    """
+    if folder.exists() or folder.is_symlink():
+        raise refusal(folder, "it exists; name a new folder")
+    with refused_as(folder):
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        unfinished = Path(tempfile.mkdtemp(prefix=_UNFINISHED, dir=folder.parent))
+    with undone_at_signal(partial(shutil.rmtree, unfinished, ignore_errors=True)):
+        try:
+            with refused_as(folder):
+                for name, content in contents.items():
+                    if content is None:
+                        (unfinished / name).mkdir()
+                    else:
+                        (unfinished / name).write_text(content, encoding="utf-8", newline="\n")
+                unfinished.chmod(0o777 & ~_mask())
+                unfinished.rename(folder)
+        finally:
+            shutil.rmtree(unfinished, ignore_errors=True)
+    return folder
+
+
+def _mask() -> int:
+    """Bits of the mode that new files of this process lack."""
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
 
 
 @contextmanager

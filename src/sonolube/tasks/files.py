@@ -31,6 +31,7 @@ class NamedBytes:
 InputFile = str | Path | NamedBytes
 """A file to read: its path, or its name with its bytes."""
 
+_NONE = "none"
 _PREFIX = "sonolube-bytes-"
 _REST = re.compile(rf"\w+{re.escape(os.sep)}")
 _BEFORE_A_PATH = (" ", "'", '"', "(", "\t", "\n")
@@ -53,6 +54,11 @@ def file_path(file: InputFile) -> Path:
     path = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix=_PREFIX)), file.name)
     path.write_bytes(file.content)
     return path
+
+
+def is_none(file: object) -> bool:
+    """Whether an argument is the word none, which leaves out what the folder of a rig has."""
+    return isinstance(file, str | Path) and str(file) == _NONE
 
 
 def with_names_only(text: str) -> str:

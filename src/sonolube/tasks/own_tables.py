@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, overload
 from sonolube.design.ranges import ends_of, values_of
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.measurement.recordings.reader import mapping_by_name
+from sonolube.measurement.recordings.reader import mapping_by_name, recipes_first_in
+from sonolube.measurement.run_sheet_file import has_runs_in_use
+from sonolube.rig.file.rig_folder import INSTRUMENTS, RECORDS, RUNS_FILE, folder_of
 from sonolube.storage.user_files import input_text
-from sonolube.tasks.files import InputFile, NamedBytes, file_path
+from sonolube.tasks.files import InputFile, NamedBytes, file_path, is_none
 from sonolube.tasks.parameters import File, OwnRuns, RunsSource
 from sonolube.tasks.task import refuse_unused, shown
 
@@ -39,20 +41,36 @@ def mapping_of(mapping: InputFile | None) -> RecordingMapping | None:
 
 
 @overload
-def runs_of(runs: OwnRuns, mapping: InputFile | None = None) -> "xr.Dataset": ...
+def runs_of(runs: OwnRuns, mapping: InputFile | None = None, rig: "Rig | None" = None) -> "xr.Dataset": ...
 @overload
-def runs_of(runs: RunsSource, mapping: InputFile | None = None) -> "xr.Dataset | None": ...
-def runs_of(runs: RunsSource, mapping: InputFile | None = None) -> "xr.Dataset | None":
-    """Measured runs of a table or of a query of the catalogue; a dataset as it is.
+def runs_of(runs: RunsSource, mapping: InputFile | None = None, rig: "Rig | None" = None) -> "xr.Dataset | None": ...
+def runs_of(runs: RunsSource, mapping: InputFile | None = None, rig: "Rig | None" = None) -> "xr.Dataset | None":
+    """Measured runs of a table, of a query of the catalogue, or of the folder of a rig; a dataset as it is.
+
+    Where no table is given, the runs of the folder of the rig are taken, and a caveat says so. Recipes of its
+    instruments come first.
 
     Raises
     ------
     InvalidInput
         If the table cannot be read, or a mapping was given without one.
     """
-    if runs is None:
-        refuse_unused("mapping", because="without a table of runs")
-        return None
+    folder = None if rig is None else folder_of(rig)
+    with recipes_first_in(None if folder is None else folder / INSTRUMENTS):
+        if runs is not None:
+            return None if is_none(runs) else _given_runs(runs, mapping, folder)
+        if folder is None or not has_runs_in_use(file := folder / RUNS_FILE):
+            refuse_unused("mapping", because="without a table of runs")
+            return None
+        found = _given_runs(file, mapping, folder)
+    said = (
+        f"the runs of {folder.name or folder}/{RUNS_FILE} are taken as own runs; {shown('runs')} none leaves them out"
+    )
+    return found.assign_attrs(caveats="\n".join(each for each in (said, str(found.attrs.get("caveats", ""))) if each))
+
+
+def _given_runs(runs: OwnRuns, mapping: InputFile | None, folder: Path | None) -> "xr.Dataset":
+    """Measured runs of an argument; a query searches the records of the folder of the rig unless it names another."""
     is_query = isinstance(runs, str | Path) and str(runs).startswith(_CATALOGUE)
     if is_query or not isinstance(runs, str | Path | NamedBytes):
         if mapping is not None:
@@ -61,10 +79,11 @@ def runs_of(runs: RunsSource, mapping: InputFile | None = None) -> "xr.Dataset |
             return runs
         from sonolube.laboratory.catalogue import catalogued_runs
 
-        return catalogued_runs(str(runs))
+        return catalogued_runs(str(runs), **({} if folder is None else {"place": folder / RECORDS}))
     from sonolube.measurement.measured_runs import read_runs
 
-    return read_runs(file_path(runs), mapping=mapping_of(mapping))
+    path = file_path(runs)
+    return read_runs(path / RUNS_FILE if path.is_dir() else path, mapping=mapping_of(mapping))
 
 
 def number_table(path: Path) -> "Floats":

@@ -262,3 +262,18 @@ def test_thermal_takes_the_materials_of_the_rig(capsys: CaptureFixture[str]) -> 
         answers.append(json.loads(capsys.readouterr().out)["temperature_rise"])
     same(answers[0], answers[1])
     assert answers[2] != pytest.approx(answers[1], rel=1e-3)
+
+
+def test_a_folder_is_made_whole_and_never_in_place_of_another(desk: Path, capsys: CaptureFixture[str]) -> None:
+    for code in (0, 2):
+        with raises(SystemExit) as end:
+            main(["new", "bench", "--folder", *KNOWN])
+        assert end.value.code == code
+    assert "bench: exists; name a new folder" in capsys.readouterr().err
+    assert [each.name for each in desk.iterdir()] == ["bench"]
+    assert read_rig("bench").name == "bench"
+    with raises(SystemExit):
+        main(["predict", "bench", "--json"])
+    answer = json.loads(capsys.readouterr().out)
+    assert {Path(each).parent for each in answer["files"]} == {Path("bench/answers")}
+    assert {each.name for each in desk.iterdir()} == {"bench"}

@@ -109,6 +109,16 @@ class OutputFolder:
 
 
 @dataclass(frozen=True, slots=True)
+class AnswersFolder(OutputFolder):
+    """Marks the folder of the files of an answer, which is that of the rig's folder where none is typed."""
+
+
+@dataclass(frozen=True, slots=True)
+class RigPath:
+    """Marks, in the annotation of an argument, the file or the folder of a rig."""
+
+
+@dataclass(frozen=True, slots=True)
 class ContinuedFolder:
     """Marks, in the annotation of an argument, a folder of records that the command completes where they are."""
 
@@ -121,6 +131,7 @@ def with_checked_files(command: Callable[..., None]) -> Callable[..., None]:
 
     @wraps(command)
     def run(**arguments: Any) -> None:
+        arguments |= _folders_of_rig(command, arguments)
         with command_files():
             marks, continued = output_marks(command), _marked(command, ContinuedFolder)
             for name, value in arguments.items():
@@ -134,6 +145,31 @@ def with_checked_files(command: Callable[..., None]) -> Callable[..., None]:
             command(**arguments)
 
     return run
+
+
+def answers_folder(rig: Path | None) -> Path:
+    """Folder of the files of an answer where none is typed: that in the folder of a rig, or the usual one."""
+    if rig is None or not rig.is_dir():
+        return OUT
+    from sonolube.rig.file.rig_folder import ANSWERS
+
+    return rig / ANSWERS
+
+
+def _folders_of_rig(command: Callable[..., None], arguments: Mapping[str, Any]) -> dict[str, Path]:
+    """Folders of answers that were not typed, and lie in that of the rig."""
+    rigs = [arguments[name] for name in _marked(command, RigPath)]
+    untyped = [
+        name
+        for name in (_marked(command, AnswersFolder) if rigs else ())
+        if arguments[name] == OUT and not is_given(arguments["context"], name)
+    ]
+    return {name: answers_folder(rigs[0]) for name in untyped}
+
+
+def is_given(context: typer.Context, name: str) -> bool:
+    """Whether an argument was typed."""
+    return getattr(context.get_parameter_source(name), "name", "DEFAULT") != "DEFAULT"
 
 
 def output_marks(command: Callable[..., None]) -> dict[str, OutputFile | OutputFolder]:
@@ -163,7 +199,8 @@ def _paths(value: Any) -> Iterator[Path]:
 
 def _stem(value: Any) -> str:
     """Name of a file, or of a choice, in a pattern."""
-    return escape(Path(str(value)).stem)
+    path = Path(str(value))
+    return escape(path.resolve().name if isinstance(value, Path) and path.is_dir() else path.stem)
 
 
 _POLL = 0.1  # s, between two looks at requests to end while an operator is asked

@@ -119,13 +119,15 @@ _HEADER: Final = (
 )
 
 
-def catalogued_runs(text: str) -> "xr.Dataset":
+def catalogued_runs(text: str, *, place: Path = RUNS_FOLDER) -> "xr.Dataset":
     r"""Measured runs that a query of the catalogue finds, as `sonolube.measurement.measured_runs.read_runs`.
 
     Parameters
     ----------
     text : str
         Such as ``catalogue:material=brass,load=3N..6N,in=runs``; conditions by commas, a comma within one as ``\,``.
+    place : Path
+        Folder of runs where the query names none.
 
     Returns
     -------
@@ -137,7 +139,7 @@ def catalogued_runs(text: str) -> "xr.Dataset":
     InvalidInput
         If the query cannot be read, finds no run, or none has friction that can be measured.
     """
-    parent, values = _conditions(text)
+    parent, values = _conditions(text, place)
     found = query_runs(parent, query_from(values))
     if not found.entries:
         raise InvalidInput(f"{text}: finds none of {found.of} runs in {parent}; sonolube lab runs {parent} lists them")
@@ -176,9 +178,9 @@ def level_rows(folders: Sequence[Path]) -> tuple[list[list[str]], list[str]]:
     return rows, left_out
 
 
-def _conditions(text: str) -> tuple[Path, dict[str, list[str]]]:
+def _conditions(text: str, place: Path = RUNS_FOLDER) -> tuple[Path, dict[str, list[str]]]:
     """Folder and conditions of a query."""
-    parent = RUNS_FOLDER
+    parent = place
     values: dict[str, list[str]] = {}
     marked = text.removeprefix(CATALOGUE_PREFIX).replace("\\,", "\0")
     for condition in filter(None, (each.strip() for each in marked.split(","))):

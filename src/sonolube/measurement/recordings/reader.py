@@ -7,6 +7,8 @@ import hashlib
 import math
 import re
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import replace
 from functools import cache
 from importlib.resources import files
@@ -127,17 +129,35 @@ def instrument_mappings() -> dict[str, RecordingMapping]:
 
 
 _RECIPES = "instruments"
+_FIRST: ContextVar[Path | None] = ContextVar("folder of recipes", default=None)
+
+
+@contextmanager
+def recipes_first_in(folder: Path | None) -> Iterator[None]:
+    """Look for recipes in a folder first, and keep new ones there, inside a `with` block; None for no such folder."""
+    token = _FIRST.set(folder)
+    try:
+        yield
+    finally:
+        _FIRST.reset(token)
 
 
 def recipe_folders(beside: Path) -> tuple[Path, ...]:
-    """Folders of recipes, the mappings of a user's instruments: one in the folder of a file, and one of the user."""
-    return beside.parent / _RECIPES, user_state_folder() / _RECIPES
+    """Folders of recipes, the mappings of a user's instruments: one in the folder of a file, and one of the user.
+
+    Before them that of `recipes_first_in`.
+    """
+    first = _FIRST.get()
+    return *(() if first is None else (first,)), beside.parent / _RECIPES, user_state_folder() / _RECIPES
 
 
 def recipes(beside: Path) -> dict[str, RecordingMapping]:
-    """Recipes by name that hold for a file, those in its folder before those of the user."""
+    """Recipes by name that hold for a file, in the order of their folders."""
     found = [path for folder in recipe_folders(beside) if folder.is_dir() for path in sorted(folder.glob("*.toml"))]
-    return {path.stem: read_mapping(path) for path in reversed(found)}
+    known: dict[str, RecordingMapping] = {}
+    for path in found:
+        known.setdefault(path.stem, read_mapping(path))
+    return known
 
 
 def keep_recipe(name: str, mapping: RecordingMapping, *, labels: str) -> Path:
@@ -171,7 +191,7 @@ def keep_recipe(name: str, mapping: RecordingMapping, *, labels: str) -> Path:
     pattern = re.sub(r"[^\x00-\x7f]+", ".+?", re.escape(line))
     text = replace(mapping.text, lines_to_skip=0)  # the lines above the labels differ from file to file
     known = replace(mapping, name=name, text=text, recognised_by=rf"(?m)^\s*{pattern}\s*$")
-    return write_atomically(user_state_folder() / _RECIPES / f"{name}.toml", mapping_toml(known))
+    return write_atomically((_FIRST.get() or user_state_folder() / _RECIPES) / f"{name}.toml", mapping_toml(known))
 
 
 def labels_of_runs(labels: Sequence[str]) -> str:

@@ -31,6 +31,7 @@ from sonolube.rig.file.entries import (
     with_entries,
 )
 from sonolube.rig.file.modes_file import read_modes
+from sonolube.rig.file.rig_folder import rig_file
 from sonolube.rig.file.sections import RigFile
 from sonolube.rig.file.structures import ModesSection, PinOnDiscSection
 from sonolube.rig.file.toml_file import distributions_of, prefixed, validated
@@ -44,7 +45,7 @@ def read_rig(path: str | Path, *, changes: Sequence[str] = ()) -> Rig:
     Parameters
     ----------
     path : str or Path
-        The file.
+        The file, or the folder that has it as `rig.toml`.
     changes : sequence of str
         Entries to replace, such as "drive.voltage_peak_to_peak=25.9V".
 
@@ -80,7 +81,7 @@ def rig_content(path: str | Path, *, changes: Sequence[str] = ()) -> dict[str, A
     Parameters
     ----------
     path : str or Path
-        The file.
+        The file, or the folder that has it.
     changes : sequence of str
         Entries to replace, such as "drive.voltage_peak_to_peak=25.9V".
 
@@ -100,7 +101,7 @@ def rig_content(path: str | Path, *, changes: Sequence[str] = ()) -> dict[str, A
 
 def rig_contents(path: str | Path, *variants: Sequence[str]) -> list[dict[str, Any]]:
     """Content of a rig's file, read once, with the changes of each variant, as `rig_content` returns it."""
-    path = Path(path)
+    path = rig_file(Path(path))
     with prefixed(str(path)):
         content = read_toml(path, kind="a rig file")
         return [_changed(deepcopy(content), changes, folder=path.parent) for changes in variants]

@@ -53,7 +53,8 @@ def compare(
     >>> round(answer["rms"].item(), 2)  # error of the friction ratio of published tests
     0.25
     """
-    known, own_runs = optional_rig(rig), runs_of(runs, mapping)
+    known = optional_rig(rig)
+    own_runs = runs_of(runs, mapping, known)
     point = None if known is None else vibrated_rig(known)
     table = None if own_runs is None else run_conditions(own_runs, known)
     with stage("comparing") as advance:
@@ -157,7 +158,8 @@ def fit(
     >>> answer["rms_unseen"].values.round(2).tolist()  # error of the friction ratio of unseen runs, by model
     [0.07, 0.34]
     """
-    known, table = optional_rig(rig), runs_of(runs, mapping)
+    known = optional_rig(rig)
+    table = runs_of(runs, mapping, known)
     with stage("fitting") as advance:
         result = fit_runs(table, known, models=comparison.compared_models(model), advance=advance)
     volts = None if known is None or "voltage_peak_to_peak" not in table else results.volts_per_amplitude(known)

@@ -305,7 +305,7 @@ def control(
     Example: sonolube control examples/rigs/tribometer.toml --friction 0.5N --factor 1.15 --warming 40K
     """
     known = rig_of(rig)
-    measured = runs_of(runs, mapping)
+    measured = runs_of(runs, mapping, known)
     interval, dead_time, run_time = _times(rate, delay, duration)
     final_rise = in_si("warming", warming)
     friction_step = in_si("disturbance", disturbance)

@@ -66,7 +66,7 @@ def efficiency(
         target = friction_force("target_friction", target_friction, normal_load=known.normal_load)
     calibration = calibrate_efficiency(
         known,
-        runs_of(runs, mapping),
+        runs_of(runs, mapping, known),
         friction_force=target,
         sliding_speed=in_si("speed", speed),
         confidence_level=level,

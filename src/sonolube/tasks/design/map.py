@@ -92,13 +92,19 @@ def map(  # noqa: A001 - the command's name
     """
     if target_reduction is None:
         refuse_unused("evidence", because=f"without {shown('target_reduction')}, whose chance rests on it")
-    known, learned = rig_of(rig), evidence_of(evidence)
+    known = rig_of(rig)
+    learned = None if target_reduction is None else evidence_of(evidence, known)
     refuse_replaced(known, over or {})
     chosen = _kind(known, kind)
     axes = _axes(known, chosen, over or {})
-    measured = runs_of(runs, mapping)
+    measured = runs_of(runs, mapping, known)
     if measured is not None:
-        require_mappable(measured, kind=chosen, commanded=commanded_quantity(known))
+        try:
+            require_mappable(measured, kind=chosen, commanded=commanded_quantity(known))
+        except InvalidInput:
+            if runs is not None:
+                raise
+            measured = None  # of the folder of the rig, for which nobody asked
     with stage("mapping"):
         mapped = design.MAPS[chosen](known, **axes)
     target, wanted = target_chance(target_reduction, confidence)

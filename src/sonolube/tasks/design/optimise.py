@@ -33,6 +33,7 @@ from sonolube.report.results.design.sweep import count_table
 from sonolube.report.results.record_object import operating_point, rig_settings
 from sonolube.rig import Rig, read_rig, structure_entries
 from sonolube.rig.driven_rig import driven_rig
+from sonolube.rig.file.rig_folder import rig_file
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.storage.user_files import input_text
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, Table, answer
@@ -239,7 +240,7 @@ class OptimisationAnswer(Answer):
         content = self.rig.content()
         file = self.rig.file
         is_unchanged = file is not None and read_rig(file).content() == content
-        source = input_text(file) if file is not None and is_unchanged else tomli_w.dumps(content)
+        source = input_text(rig_file(file)) if file is not None and is_unchanged else tomli_w.dumps(content)
         return {
             f"{self._name}.nc": designs_dataset(self.optimum),
             f"{self._name}.toml": design_text(source, content, self.optimum.problem, self.optimum.best),
@@ -385,7 +386,7 @@ def optimise(
     wanted = in_si("confidence", confidence)
     if wanted is not None and not 0 < wanted < 1:
         raise InvalidInput(f"{shown('confidence')} must lie between 0 and 100 %, got {100 * wanted:.4g} %")
-    measured, learned = runs_of(runs, mapping), evidence_of(evidence)
+    measured, learned = runs_of(runs, mapping, known), evidence_of(evidence, known)
     with stage("optimising") as advance:
         optimum, chance = optimum_with_chance(
             problem,

@@ -315,7 +315,7 @@ def sweep(
     [0.66, 0.35]
     """
     known = rig_of(rig)
-    measured = runs_of(runs, mapping)
+    measured = runs_of(runs, mapping, known)
     if (of is None) == (not over):
         raise InvalidInput(
             f"needs either {shown('over')}, keys with their values, or {shown('of')}, one quantity over its usual range"

@@ -88,7 +88,8 @@ def uncertainty(
         refuse_unused(
             "evidence", because=f"without {shown('interval')} of {' or '.join(_OF_THE_MODEL)}, which rests on it"
         )
-    known, learned = rig_of(rig), evidence_of(evidence)
+    known = rig_of(rig)
+    learned = evidence_of(evidence, known) if interval and of in _OF_THE_MODEL else None
     refuse_replaced(known, over or {})
     axes = _axes(over or {})
     structure = None

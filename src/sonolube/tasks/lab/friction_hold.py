@@ -20,7 +20,7 @@ from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.design import control as loop
 from sonolube.tasks.lab.protocol_run import ControlDoor, device_file, run_stage
-from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, NoSelfTest, RealTime, Seed, Tags
+from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, NoSelfTest, RealTime, Seed, Tags, place_of_records
 from sonolube.tasks.parameters import Number, Parameter, Quantity, RigFile, WatchedRig, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
@@ -191,7 +191,7 @@ def hold(
     if no_self_test:
         facts["self_test"] = "left out"
     held_to = run_limits(wanted.limits, devices, wanted.drive_sampling)
-    recorder = begin_record(wanted_run, devices, held_to, out=Path(out), facts=facts)
+    recorder = begin_record(wanted_run, devices, held_to, out=place_of_records(out, known), facts=facts)
     requests = control or RunControl()
     with run_stage("holding", requests) as advance:
         held = holds.hold_friction(

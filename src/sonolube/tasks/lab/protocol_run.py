@@ -34,7 +34,7 @@ from sonolube.report.results import ended_run as results
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.files import InputFile, file_path
-from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, NoSelfTest, Seed, Tags, facts_of
+from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, NoSelfTest, Seed, Tags, facts_of, place_of_records
 from sonolube.tasks.own_evidence import Evidence, evidence_of
 from sonolube.tasks.parameters import (
     DoorParameter,
@@ -339,7 +339,7 @@ def run(
     return run_and_record(
         wanted,
         ready_devices(Path(device_map)) if simulated is None else simulated.devices,
-        out=Path(out),
+        out=place_of_records(out, known),
         virtual=simulated,
         operator=(lambda prompt: True) if yes else operator,
         control=control,
@@ -387,14 +387,19 @@ def virtual(
         read = protocol_at(read, normal_load=known.normal_load, sliding_speed=known.sliding_speed)
     file = None if device_map is None else file_path(device_map)
     wanted = RunRequest(
-        protocol=read, name=Path(path).stem, rig=known, device_file=file, seed=seed, evidence=evidence_of(evidence)
+        protocol=read,
+        name=Path(path).stem,
+        rig=known,
+        device_file=file,
+        seed=seed,
+        evidence=evidence_of(evidence, known),
     )
     if dry_run:
         refuse_unused("file_format", "out", because=f"with {shown('dry_run')}, which records nothing")
     simulated = _virtual_rig(wanted) if file is None else _rehearsal(wanted, file, fault)
     if dry_run:
         return _planned(wanted, simulated, file)
-    found = run_and_record(wanted, simulated.devices, out=Path(out), virtual=simulated)
+    found = run_and_record(wanted, simulated.devices, out=place_of_records(out, known), virtual=simulated)
     if file_format != "netcdf":
         export_run(found.run.folder, file_format=file_format, out=found.run.folder)
     return found

@@ -9,9 +9,11 @@ from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.laboratory.catalogue import FoundRuns, query_from, query_runs, take_in
 from sonolube.laboratory.records import Recovery, Run, drop_raw_blocks, export_run, read_run, recover_run, run_folders
 from sonolube.report.results import recorded_runs as results
+from sonolube.rig import Rig
+from sonolube.rig.file.rig_folder import RECORDS, folder_of
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, Table, answer
 from sonolube.tasks.parameters import DeviceParameter, File, KeyValues, OwnFolder, Parameter
-from sonolube.tasks.task import refuse_unused, shown, task
+from sonolube.tasks.task import given_arguments, refuse_unused, shown, task
 
 if TYPE_CHECKING:
     from sonolube.report import Drawing
@@ -20,7 +22,10 @@ RUNS = "runs"
 """Folder of all runs, where none is given."""
 
 RunFolder = Annotated[str | Path, File("Folder of the run.", "RUN")]
-AllRuns = Annotated[str | Path, OwnFolder("Folder of all runs; each has a new one in it.", "DIR")]
+AllRuns = Annotated[
+    str | Path,
+    OwnFolder("Folder of all runs; each has a new one in it. Of a rig that is a folder, its records.", "DIR"),
+]
 Tags = Annotated[Sequence[str], Parameter("For the catalogue; may come again.", "TAG")]
 Seed = Annotated[int, Parameter("Of a virtual tribometer.", lowest=0)]
 RealTime = Annotated[bool, Parameter("Let a virtual test take its time.")]
@@ -28,6 +33,12 @@ NoSelfTest = Annotated[
     bool, Parameter("Do not compare voltages that are set and measured, before the first step and at every block.")
 ]
 Device = Annotated[str | Path, DeviceParameter("What to run on.", "virtual|MAP.toml", option="--device")]
+
+
+def place_of_records(out: str | Path, rig: Rig | None) -> Path:
+    """Folder of all runs of the running task: as given, else that of the records of the folder of a rig."""
+    folder = None if rig is None else folder_of(rig)
+    return Path(out) if folder is None or given_arguments(("out",)) else folder / RECORDS
 
 
 def facts_of(given: Mapping[str, str | float]) -> dict[str, str | float]:

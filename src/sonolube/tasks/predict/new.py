@@ -6,11 +6,14 @@ from typing import Annotated, Any
 
 from sonolube.errors import InvalidInput
 from sonolube.facts.materials import material
+from sonolube.measurement.run_sheet_file import EMPTY_TABLE
 from sonolube.operating_system import quoted
 from sonolube.rig import Rig
+from sonolube.rig.file.rig_folder import folder_contents
 from sonolube.rig.new_rig.pin_and_vibration import KnownSurface
 from sonolube.rig.new_rig.rig_text import KnownRig, LeastKnown, least_known, new_rig_text, rig_of_known
 from sonolube.rig.new_rig.stated_text import direction_of, pin_shape, reader, speed_of, surface_of, vibration_of
+from sonolube.storage.files import write_folder
 from sonolube.tasks.answer import Answer, Block, Dataset, Table, Verbatim, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import File, Number, Parameter, Quantity
@@ -176,6 +179,27 @@ class NewRig(Answer):
     least_known: Sequence[LeastKnown]
     target: Path | None = None
 
+    def write_folder(self, path: str | Path) -> Path:
+        """Make a folder of the rig, which tasks take in place of its file.
+
+        Parameters
+        ----------
+        path : str or Path
+            Of the folder, which must not exist.
+
+        Returns
+        -------
+        Path
+            With the rig file, an empty table of own runs, and folders for recipes, records and answers.
+
+        Raises
+        ------
+        InvalidInput
+            If it exists or cannot be written; then nothing is.
+        """
+        contents = folder_contents(title=self.rig.title, rig=self.rig_text, runs=EMPTY_TABLE)
+        return write_folder(Path(path), contents)
+
     def blocks(self) -> Sequence[Block]:
         """Title, the inputs known least with how to measure them, and the next command."""
         heads = ("least known", "distribution", "to measure it")
@@ -209,6 +233,8 @@ class NewRig(Answer):
 
     def files(self) -> Mapping[str, str]:
         """Rig file."""
+        if self.target is not None and self.target.is_dir():
+            return {}
         return {"rig.toml" if self.target is None else self.target.name: self.rig_text}
 
 

@@ -70,12 +70,13 @@ def predict(
     >>> round(float(answer["friction_ratio"].median()), 1)
     0.3
     """
-    known, own = rig_of(rig), runs_of(runs, mapping)
+    known = rig_of(rig)
+    own = runs_of(runs, mapping, known)
     result = LivePrediction(
         known,
         runs=own,
         laboratory_runs=_rigs_with_runs(laboratory),
-        evidence=evidence_of(evidence),
+        evidence=evidence_of(evidence, known),
         pin=pin,
         disc=disc,
         lubricant=lubricant,

@@ -232,7 +232,9 @@ def friction(
     by = known.friction_model if model is None else friction_model_named(known, model)
     if not interval:
         refuse_unused("evidence", because=f"without {shown('interval')}, which rests on it")
-    beyond = beyond_the_model(resolved, by, interval=interval, evidence=evidence_of(evidence))
+    beyond = beyond_the_model(
+        resolved, by, interval=interval, evidence=evidence_of(evidence, known) if interval else None
+    )
     mechanism = mechanism_text(resolved.with_friction_model(by)) if result.reason is None else ""
     return RigRecord(
         rig=known,
