@@ -25,6 +25,7 @@ from .tasks.lookup.example import example as example
 from .tasks.lookup.facts import actuators as actuators, materials as materials, published as published
 from .tasks.lookup.mapping import mapping as mapping
 from .tasks.lookup.schema import schema as schema
+from .tasks.measure.own_runs import runs as runs
 from .tasks.parts.modes import modes as modes
 from .tasks.plot import plot as plot
 from .tasks.predict.new import new as new

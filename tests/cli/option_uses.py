@@ -660,6 +660,15 @@ MODES = {
     "friction of stated parts": Mode(
         "measure friction", ("FOLDER/friction.csv",), {"--rest": "0s:1s", "--step": "1s:5s=10V"}
     ),
+    "table of own runs": Mode(
+        "runs",
+        (OWN_RUNS, "--add", "FOLDER/friction.csv", "--leave-out", "2"),
+        {
+            **{"--add": RUNS, "--leave-out": "3", "--use": "2", "--remove": "1", "--load": "2N", "--speed": "30mm/s"},
+            **{"--voltage": "20V", "--vibration": "2um", "--frequency": "21kHz"},
+        },
+    ),
+    "table of own runs by a mapping": Mode("runs", (OWN_RUNS,), {"--mapping": "FOLDER/halved.toml"}),
     "friction of a test in several files": Mode(
         "measure friction", ("FOLDER/friction.csv", "FOLDER/other.csv"), flags=("--join",)
     ),

@@ -61,6 +61,7 @@ _OWN_FUNCTIONS = {
     "identify rig": "sonolube.cli.identify_rig:identify_rig",
     "evidence learn": "sonolube.cli.evidence_learn:evidence_learn",
     "mapping": "sonolube.cli.mapping:mapping",
+    "runs": "sonolube.cli.runs:runs",
 }
 """Tasks of which a terminal has a function of its own."""
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from sonolube.errors import InvalidInput
+from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.run_columns import RUN_COLUMNS
 from sonolube.measurement.run_sheet import RunSheet, read_sheet
 from sonolube.measurement.run_table import unread_columns
@@ -36,7 +37,13 @@ class SheetFile:
     state: str = ""
 
 
-def stored_sheet(path: Path) -> tuple[RunSheet, SheetFile]:
+def state_of_file(path: Path) -> SheetFile:
+    """File as it is now, for a table that takes its place."""
+    content = _content(path)
+    return SheetFile(path=path, state="" if content is None else _state(content))
+
+
+def stored_sheet(path: Path, *, mapping: RecordingMapping | None = None) -> tuple[RunSheet, SheetFile]:
     """Table of own runs of a file, without a run where it has headings alone or does not exist, and its state.
 
     Raises
@@ -47,7 +54,7 @@ def stored_sheet(path: Path) -> tuple[RunSheet, SheetFile]:
     content = _content(path)
     if content is None:
         return RunSheet(), SheetFile(path=path)
-    sheet = read_sheet(path) if _has_rows(content) else RunSheet()
+    sheet = read_sheet(path, mapping=mapping) if _has_rows(content) else RunSheet()
     return sheet, SheetFile(path=path, state=_state(content))
 
 

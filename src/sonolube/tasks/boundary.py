@@ -417,7 +417,22 @@ def runs_argument(name: str, value: Any) -> Any:
         return runs_of_dataset(value, name=name)
     if isinstance(value, str | os.PathLike | NamedBytes | bytes | bytearray):
         return file_argument(name, value, suffix=".csv")
-    raise refusal(name, value, "the path of a table, its bytes, a DataFrame, or the dataset of read_runs")
+    if (sheet := _sheet_of(value)) is not None:
+        if not sheet.rows:
+            raise InvalidInput(f"{name}: this table has no run yet")
+        return NamedBytes("runs", sheet.csv().encode())
+    raise refusal(name, value, "the path of a table, its bytes, a DataFrame, a table of runs, or that of read_runs")
+
+
+def _sheet_of(value: Any) -> Any:
+    """Table of own runs of an answer that has one; None for anything else."""
+    from sonolube.measurement.run_sheet import RunSheet
+
+    try:
+        sheet = value.sheet
+    except Exception:  # of an attribute of any object
+        return None
+    return sheet if isinstance(sheet, RunSheet) else None
 
 
 def _recording_of(name: str, value: Any) -> NamedBytes:

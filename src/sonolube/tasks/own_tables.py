@@ -6,7 +6,7 @@ Values of a key are a text such as "20kHz:24kHz:50", or numbers in SI.
 import io
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, overload
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, cast, overload
 
 from sonolube.design.ranges import ends_of, values_of
 from sonolube.errors import InvalidInput
@@ -76,7 +76,7 @@ def _given_runs(runs: OwnRuns, mapping: InputFile | None, folder: Path | None) -
         if mapping is not None:
             raise InvalidInput(f"{shown('mapping')} has no meaning here; it is for files of runs", key="mapping")
         if not isinstance(runs, str | Path | NamedBytes):
-            return runs
+            return cast("xr.Dataset", runs)  # a table of own runs was made a file where arguments are coerced
         from sonolube.laboratory.catalogue import catalogued_runs
 
         return catalogued_runs(str(runs), **({} if folder is None else {"place": folder / RECORDS}))

@@ -14,6 +14,7 @@ from sonolube.vocabulary import quantities
 if TYPE_CHECKING:
     import xarray as xr
 
+    from sonolube.measurement.run_sheet import RunSheet
     from sonolube.rig import Rig
 
 Number = float | str
@@ -79,6 +80,10 @@ class OwnFolder(Parameter):
     """Meaning of an argument that names a folder in which the task itself writes, such as the folder of all runs."""
 
 
+class OwnFile(File, OwnFolder):
+    """Meaning of an argument that names a file that is read, and written where it was changed."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RigParameter:
     """Marks the rig of a task: on a terminal its file, with entries replaced, load and source of the amplitude.
@@ -124,10 +129,18 @@ RigSource: TypeAlias = "Rig | HasRig | InputFile"
 """A rig, an answer that has one, or the path of a file."""
 
 OptionalRigSource: TypeAlias = "Rig | HasRig | InputFile | None"
-OwnRuns: TypeAlias = "InputFile | xr.Dataset"
-"""Measured runs: a table, a query such as "catalogue:material=brass", or the dataset of `sl.read_runs`."""
+OwnRuns: TypeAlias = "InputFile | xr.Dataset | HasRunSheet"
+"""Measured runs: a table, a query such as "catalogue:material=brass", or that of `sl.runs` or `sl.read_runs`."""
 
-RunsSource: TypeAlias = "InputFile | xr.Dataset | None"
+RunsSource: TypeAlias = "InputFile | xr.Dataset | HasRunSheet | None"
+
+
+class HasRunSheet(Protocol):
+    """Answer that has a table of own runs, such as that of `runs`."""
+
+    @property
+    def sheet(self) -> "RunSheet":
+        """Table of the answer."""
 
 
 class HasRig(Protocol):

@@ -122,6 +122,7 @@ TASKS: Final = (
     Task(_DESIGN, "efficiency", "design.efficiency:efficiency", "efficiency.html {runs}-efficiency.*"),
     Task(_DESIGN, "horn design", "horn.horns:design", "{part}-axis.* {part}-mode.* {part}-drawing.* {part}-tuned.step"),
     Task(_DESIGN, "horn face", "horn.horns:face", "horn-{horn}-face.*"),
+    Task(_MEASURE, "runs", "measure.own_runs:runs"),
     Task(_MEASURE, "measure friction", "measure.recordings:friction", has_report=True),
     Task(_MEASURE, "measure rotation", "measure.recordings:rotation", has_report=True),
     Task(_MEASURE, "measure temperature", "measure.recordings:temperature", has_report=True),
