@@ -19,8 +19,7 @@ import numpy as np
 from sonolube.checks import require_positive
 from sonolube.dong2015.sizes import SIZES
 from sonolube.errors import InvalidInput
-from sonolube.models.fem.mesh.geometry import MILLIMETRE, Geometry, bond, cad_kernel, single_body
-from sonolube.models.fem.parts.bodies import extruded_polygon
+from sonolube.models.fem import MILLIMETRE, Geometry, bond, cad_kernel, extruded_polygon, single_body
 
 _FAR = 1e3  # in mm, beyond any collar
 _FLAT_HALF_WIDTH = 5.5e-3  # of the flats of a round inner ring, in m, assumed

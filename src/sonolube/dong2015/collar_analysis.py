@@ -15,13 +15,24 @@ from sonolube.checks import Floats
 from sonolube.dong2015.collar import Collar, collar_geometry
 from sonolube.errors import InvalidInput
 from sonolube.facts.materials import material
-from sonolube.models.fem.mesh.element_order import generate_mesh
-from sonolube.models.fem.mesh.mesh import Mesh
-from sonolube.models.fem.parts.stack_material import homogenised_stack, stack_ceramic
-from sonolube.models.fem.solver.assembly import scalar_mass_matrix, tributary_areas
-from sonolube.models.fem.solver.model import Electrodes, FixedSupport, Medium, Model, medium_from_material, poled_medium
-from sonolube.models.fem.solver.modes import natural_modes
-from sonolube.models.fem.solver.reduction import Output, ReducedModel, reduce_model
+from sonolube.models.fem import (
+    Electrodes,
+    FixedSupport,
+    Medium,
+    Mesh,
+    Model,
+    Output,
+    ReducedModel,
+    generate_mesh,
+    homogenised_stack,
+    medium_from_material,
+    natural_modes,
+    poled_medium,
+    reduce_model,
+    scalar_mass_matrix,
+    stack_ceramic,
+    tributary_areas,
+)
 
 
 class BoreMotion(StrEnum):

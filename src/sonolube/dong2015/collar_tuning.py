@@ -10,8 +10,7 @@ from sonolube.checks import Floats
 from sonolube.dong2015.collar import Collar
 from sonolube.dong2015.collar_analysis import ELEMENT_SIZE, ORDER, reduced_collar_model
 from sonolube.errors import InvalidInput
-from sonolube.models.fem.solver.reduction import ReducedModel
-from sonolube.models.fem.solver.response import coupled_resonances
+from sonolube.models.fem import ReducedModel, coupled_resonances
 
 LOWEST_FREQUENCY, HIGHEST_FREQUENCY = 15e3, 40e3
 """Frequency range of the main resonance in Hz; D reports none outside it."""

@@ -13,11 +13,20 @@ from typing import Any, Final
 
 from sonolube.dong2015.sizes import sized, sourced_dimensions
 from sonolube.errors import UnknownName
-from sonolube.models.fem.mesh.geometry import MILLIMETRE, Geometry, cad_kernel, single_body
-from sonolube.models.fem.parts.bodies import extruded_polygon
-from sonolube.models.fem.parts.transducers import Transducer, stack_bodies, stack_from_bodies
-from sonolube.models.fem.solver.model import FixedSupport, Medium, isotropic_medium
-from sonolube.models.fem.solver.reduction import Output
+from sonolube.models.fem import (
+    MILLIMETRE,
+    FixedSupport,
+    Geometry,
+    Medium,
+    Output,
+    Transducer,
+    cad_kernel,
+    extruded_polygon,
+    isotropic_medium,
+    single_body,
+    stack_bodies,
+    stack_from_bodies,
+)
 
 _FAR: Final = 1e3  # mm, beyond any horn
 _PAD: Final = 5e-3  # m, half the edge of the patch that the block touches, 1 cm2 in the rigs

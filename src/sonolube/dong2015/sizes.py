@@ -7,7 +7,7 @@ from inspect import Parameter, signature
 from pathlib import Path
 from typing import Any, Final
 
-from sonolube.models.fem.parts.transducers import SourcedDimension, Transducer
+from sonolube.models.fem import SourcedDimension, Transducer
 
 SIZES: Final = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 """Tables of the file beside this module by part."""

@@ -17,17 +17,22 @@ from sonolube.dong2015.collar import COLLAR_DIMENSION_SOURCES, FINAL_COLLAR, col
 from sonolube.dong2015.collar_analysis import collar_media
 from sonolube.dong2015.horn import poisson_horn
 from sonolube.dong2015.sizes import sized, sourced_dimensions
-from sonolube.models.fem.mesh.geometry import Geometry, bond, cad_kernel, single_body
-from sonolube.models.fem.parts.bodies import acorn_nut, hub_disc
-from sonolube.models.fem.parts.transducers import (
+from sonolube.models.fem import (
+    Electrodes,
+    FixedSupport,
+    Geometry,
+    Output,
     SourcedDimension,
     Transducer,
+    acorn_nut,
+    bond,
+    cad_kernel,
+    hub_disc,
+    single_body,
     stack_bodies,
     stack_from_bodies,
     stack_transducer,
 )
-from sonolube.models.fem.solver.model import Electrodes, FixedSupport
-from sonolube.models.fem.solver.reduction import Output
 
 _OF_STACK = ("outer_radius", "inner_radius", "length", "rod_radius", "back_length", "front_length", "washer_radius")
 TRIBOMETER_ACTUATOR_DIMENSIONS = sourced_dimensions("tribometer_actuator")

@@ -6,12 +6,11 @@ from typing import Final, Literal, get_args
 
 from sonolube.checks import Floats
 from sonolube.facts.published import si_value
-from sonolube.models.actuator import BarWaveguide, normal_amplitude
-from sonolube.models.actuator.drive import Drive
+from sonolube.models.actuator import BarWaveguide, Drive, normal_amplitude
 from sonolube.models.contact import ASPERITY_LAWS, RoughContact
 from sonolube.models.dynamics import Structure, chain_structure, pin_on_disc_chain
 from sonolube.models.friction import FRICTION_MODELS, dong_2015_half_period_ratio
-from sonolube.rig.driven_rig import DrivenRig
+from sonolube.rig import DrivenRig
 from sonolube.validation.contacts import (
     STEEL_YIELD_STRENGTH,
     STEEL_YIELD_STRENGTHS,

@@ -6,6 +6,7 @@ from .contact_temperature import (
 )
 from .datasets import dataset as dataset, gridded as gridded, write_netcdf as write_netcdf
 from .distribution import Distribution as Distribution, LogNormal as LogNormal, Normal as Normal, Uniform as Uniform
+from .driven_rig import DrivenRig as DrivenRig
 from .figures import STUDY_CHARTS as STUDY_CHARTS
 from .file.reader import (
     read_rig as read_rig,

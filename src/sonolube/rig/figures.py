@@ -311,7 +311,7 @@ def load_chart(study: Dataset) -> Chart:
     return Chart(panels=tuple(panels), size=size, columns=len(panels))
 
 
-STUDY_CHARTS: Mapping[str, Callable[[Dataset], Chart]] = MappingProxyType(
+STUDY_CHARTS: Mapping[str, Callable[..., Chart]] = MappingProxyType(
     {
         "voltage": command_chart,
         "amplitude": command_chart,

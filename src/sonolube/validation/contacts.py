@@ -51,10 +51,23 @@ RMS_OVER_ARITHMETIC_MEAN: Final = sqrt(pi / 2)
 """R_q over R_a of Gaussian heights. []"""
 
 Bodies = Literal["aluminium_steel", "steel_steel"]
+"""Metals of the bodies of the Poisson-effect tests."""
 
 
 def poisson_contact(*, bodies: Bodies, yield_strength: float = STEEL_YIELD_STRENGTH) -> RoughContact:
-    """Contact of the Poisson-effect tests, Table 3.1."""
+    """Rough contact of the Poisson-effect tests, D Table 3.1.
+
+    Parameters
+    ----------
+    bodies : {"aluminium_steel", "steel_steel"}
+        Metals of both bodies; the softer one yields.
+    yield_strength : float
+        Of steel on steel; that of aluminium is printed. [Pa]
+
+    Returns
+    -------
+    RoughContact
+    """
     steel, aluminium = (
         ElasticBody(
             youngs_modulus=si_value(f"table-3.1-youngs_modulus_{metal}-1"),
@@ -74,7 +87,12 @@ def poisson_contact(*, bodies: Bodies, yield_strength: float = STEEL_YIELD_STREN
 
 
 def wear_contact() -> RoughContact:
-    """Contact of the wear model on the modified tribometer, Table 3.2."""
+    """Rough contact of the wear model on the modified tribometer, D Table 3.2.
+
+    Returns
+    -------
+    RoughContact
+    """
     poisson_ratio = si_value("table-3.1-poisson_ratio_aluminium-1")
     return RoughContact(
         roughness=_roughness("3.2"),
@@ -90,7 +108,19 @@ def wear_contact() -> RoughContact:
 
 
 def steel_on_steel_contact(*, nominal_area: float, yield_strength: float = STEEL_YIELD_STRENGTH) -> RoughContact:
-    """Contact of two steel bodies with the roughness of Table 3.2."""
+    """Contact of two steel bodies with the roughness of D Table 3.2.
+
+    Parameters
+    ----------
+    nominal_area : float
+        Nominal contact area. [m2]
+    yield_strength : float
+        Of the softer steel. [Pa]
+
+    Returns
+    -------
+    RoughContact
+    """
     pressed = poisson_contact(bodies="steel_steel", yield_strength=yield_strength)
     return replace(pressed, roughness=_roughness("3.2"), nominal_area=nominal_area)
 
@@ -103,6 +133,15 @@ def uncoated_plate_contact(*, yield_strength: float = STEEL_YIELD_STRENGTH) -> R
     with the 1.69 um of D 4.1.3 as R_a, which D prints wherever it names the kind of a single roughness; as R_q it
     would be 1.69 um. The plates did not wear measurably, so that it holds during the tests. The roughness of the pin
     is not printed. Summit radius and density are those of Table 3.2.
+
+    Parameters
+    ----------
+    yield_strength : float
+        Of the softer steel. [Pa]
+
+    Returns
+    -------
+    RoughContact
     """
     area = si_value("table-4.1-nominal_area-1")
     rough = steel_on_steel_contact(nominal_area=area, yield_strength=yield_strength)
@@ -164,5 +203,9 @@ def efficiency_line() -> EfficiencyLine:
     .. math:: \eta = -2.93\,v_r + 0.672
 
     with the sliding speed in m/s and the efficiency coefficient in mW mm2/(N W), D 4.2.
+
+    Returns
+    -------
+    EfficiencyLine
     """
     return EfficiencyLine(slope=si_value("4.1.2-efficiency-slope"), intercept=si_value("4.1.2-efficiency-intercept"))

@@ -41,7 +41,23 @@ def _normal_stick_slip(test: FrictionTest | ConditionColumns, memory_length: flo
 def asperity_stick_slip(
     test: FrictionTest, *, memory_length: float, in_plane_fraction: float = 0.0, in_plane_phase: float = 0.0
 ) -> Floats:
-    """Friction ratio of a test by asperity stick-slip about the load-balanced mean gap. []"""
+    """Friction ratio of a test by asperity stick-slip about the load-balanced mean gap.
+
+    Parameters
+    ----------
+    test : FrictionTest
+    memory_length : float
+        Sliding distance over which an asperity forgets. [m]
+    in_plane_fraction : float
+        Amplitude of an in-plane motion over that along the normal. []
+    in_plane_phase : float
+        Phase of the in-plane motion. [rad]
+
+    Returns
+    -------
+    ndarray
+        Friction under vibration over that at rest.
+    """
     if in_plane_fraction == 0:
         return _normal_stick_slip(test, memory_length)
     model = friction.AsperityStickSlip(
@@ -69,7 +85,19 @@ def _stick_slip_with_decay_constant(
 
 
 def mindlin_stick_slip(test: FrictionTest, friction_coefficient_factor: float = 1.0) -> Floats:
-    """Friction ratio of a test by asperity stick-slip with the memory length of Mindlin. []"""
+    """Friction ratio of a test by asperity stick-slip with the memory length of Mindlin.
+
+    Parameters
+    ----------
+    test : FrictionTest
+    friction_coefficient_factor : float
+        Factor of the measured coefficient of friction, of which the memory length is computed.
+
+    Returns
+    -------
+    ndarray
+        Friction under vibration over that at rest.
+    """
     length = friction.mindlin_memory_length(
         test.contact,
         friction_coefficient=friction_coefficient_factor * test.friction_coefficient,

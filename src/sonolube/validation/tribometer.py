@@ -51,7 +51,12 @@ def tribometer_model() -> ForwardModel:
 
 
 def tribometer_stack() -> PiezoStack:
-    """Stack of Table 3.5, its coupling factor derived from the other constants."""
+    """Piezoelectric stack of the tribometer, D Table 3.5, its coupling factor derived from the other constants.
+
+    Returns
+    -------
+    PiezoStack
+    """
 
     def constant(name: str) -> float:
         return si_value(f"table-3.5-{name}-1")

@@ -9,9 +9,12 @@ from .mesh.element_order import (
     transfer_field as transfer_field,
 )
 from .mesh.geometry import (
+    MILLIMETRE as MILLIMETRE,
     Geometry as Geometry,
     bond as bond,
+    cad_kernel as cad_kernel,
     read_step as read_step,
+    single_body as single_body,
     step_text as step_text,
     translate as translate,
 )
@@ -42,6 +45,7 @@ from .parts.bodies import (
     conical_horn as conical_horn,
     cylinder as cylinder,
     exponential_horn as exponential_horn,
+    extruded_polygon as extruded_polygon,
     hexagon as hexagon,
     hub_disc as hub_disc,
     ring as ring,
@@ -65,6 +69,7 @@ from .results.nodal_fields import (
     von_mises_stress as von_mises_stress,
     vtu_text as vtu_text,
 )
+from .solver.assembly import scalar_mass_matrix as scalar_mass_matrix, tributary_areas as tributary_areas
 from .solver.model import (
     Electrodes as Electrodes,
     FaceSpring as FaceSpring,

@@ -16,8 +16,7 @@ from sonolube.reproduction.chapter3 import tribometer_response
 from sonolube.reproduction.plots import axes_row, line_style, report_figure
 from sonolube.reproduction.published_rigs import IDENTIFIED_NOTE, tribometer_rig
 from sonolube.reproduction.row import Row, default_model_row, published_formula_row, published_model_row
-from sonolube.rig import operating_points
-from sonolube.rig.figures import command_chart, frequency_chart, power_chart, speed_chart, waveform_chart
+from sonolube.rig import STUDY_CHARTS, operating_points
 from sonolube.validation.contacts import wear_contact
 
 if TYPE_CHECKING:
@@ -237,17 +236,24 @@ def parametric_study_figures() -> Iterator[ReportFigure]:
     """Figures of sections 3.3.4 and 3.3.5."""
     yield report_figure("figure-3-13-start-up", _draw_start_up, identified=IDENTIFIED_NOTE)
     yield report_figure("figure-3-15-voltage", _draw_voltage)
-    yield report_figure("figure-3-16-speed", lambda: draw_chart(speed_chart(tribometer_response.response_over_speed())))
+    yield report_figure(
+        "figure-3-16-speed", lambda: draw_chart(STUDY_CHARTS["speed"](tribometer_response.response_over_speed()))
+    )
     yield report_figure(
         "figure-3-17-frequency",
-        lambda: draw_chart(frequency_chart(tribometer_response.response_over_frequency(), power="charging_power")),
+        lambda: draw_chart(
+            STUDY_CHARTS["frequency"](tribometer_response.response_over_frequency(), power="charging_power")
+        ),
     )
     yield report_figure(
         "figure-3-17-least-power",
-        lambda: draw_chart(power_chart(tribometer_response.least_power_over_frequency(), power="charging_power")),
+        lambda: draw_chart(
+            STUDY_CHARTS["power"](tribometer_response.least_power_over_frequency(), power="charging_power")
+        ),
     )
     yield report_figure(
-        "figure-3-18-waveform", lambda: draw_chart(waveform_chart(tribometer_response.response_over_waveform()))
+        "figure-3-18-waveform",
+        lambda: draw_chart(STUDY_CHARTS["waveform"](tribometer_response.response_over_waveform())),
     )
 
 
@@ -275,7 +281,7 @@ def _draw_voltage() -> "Figure":
     """Draw the response over voltage with the statements of D 3.3.5."""
     lost = float(decay_length(tribometer_rig().contact)) * np.log(1 / LOST_CONTACT)
     hopping = 1e6 * si_value("3.3.5-hopping-displacement")
-    chart = command_chart(tribometer_response.response_over_voltage())
+    chart = STUDY_CHARTS["voltage"](tribometer_response.response_over_voltage())
     chart = chart.with_parts(
         0,
         Rule(along="y", value=hopping, label="hopping, D 3.3.5", dash=1),

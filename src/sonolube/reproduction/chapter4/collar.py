@@ -16,7 +16,7 @@ from sonolube.models.contact import decay_length
 from sonolube.models.dynamics import ExponentialGap, steady_state
 from sonolube.models.fem import ReducedModel, contact_structure, with_free_body
 from sonolube.models.friction import AsperityStickSlip
-from sonolube.rig.vibration import gap_motion
+from sonolube.rig import gap_motion
 from sonolube.validation.contacts import steel_on_steel_contact
 
 ROD_LENGTH: Final = 0.3

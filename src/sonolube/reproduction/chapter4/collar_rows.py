@@ -20,8 +20,7 @@ from sonolube.dong2015.collar_tuning import HIGHEST_FREQUENCY, LOWEST_FREQUENCY,
 from sonolube.errors import MissingPackage
 from sonolube.facts.published import ComputedValue, published_value, si_value
 from sonolube.figure import COLOURS, LINES, ReportFigure
-from sonolube.models.fem import ReducedModel, harmonic_response
-from sonolube.models.fem.mesh.geometry import cad_kernel
+from sonolube.models.fem import ReducedModel, cad_kernel, harmonic_response
 from sonolube.reproduction.chapter4.collar import (
     LOAD_AT_ENDS,
     PULL_SPEED,

@@ -22,9 +22,7 @@ from sonolube.reproduction.chapter4 import power_map
 from sonolube.reproduction.plots import draw_printed, report_figure, single_axes
 from sonolube.reproduction.published_rigs import IDENTIFIED_NOTE, plate_rig
 from sonolube.reproduction.row import Row, RowKind, default_model_row, published_formula_row, undetermined_row
-from sonolube.rig import load_study
-from sonolube.rig.driven_rig import DrivenRig
-from sonolube.rig.figures import load_chart
+from sonolube.rig import STUDY_CHARTS, DrivenRig, load_study
 from sonolube.text.units import convert
 from sonolube.validation.contacts import RMS_OVER_ARITHMETIC_MEAN, STEEL_YIELD_STRENGTH
 
@@ -238,7 +236,7 @@ def _load() -> "Figure":
     """Draw the response over load with the loads of the maximum in the text."""
     low, high = (np.array([si_value(f"4.1.2-peak-load-{end}")]) for end in (1, 2))
     zone = Zone(first=low, last=high, label="D 4.1.2", colour="0.88")
-    return draw_chart(load_chart(response_over_load()).with_parts(0, zone).with_parts(1, zone))
+    return draw_chart(STUDY_CHARTS["load"](response_over_load()).with_parts(0, zone).with_parts(1, zone))
 
 
 def coated_plate_figures() -> Iterator[ReportFigure]:

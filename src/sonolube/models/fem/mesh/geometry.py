@@ -33,7 +33,18 @@ _REDIRECTION = RLock()  # file descriptors belong to the process, not to a threa
 
 
 def cad_kernel() -> Any:
-    """Module `netgen.occ`, the CAD kernel."""
+    """CAD kernel, the module `netgen.occ`, of which bodies of other shapes are made.
+
+    Returns
+    -------
+    module
+        Its lengths are millimetres; `MILLIMETRE` is one in metres.
+
+    Raises
+    ------
+    MissingPackage
+        If netgen is not installed.
+    """
     try:
         return import_module("netgen.occ")
     except ImportError:
@@ -274,7 +285,25 @@ def bond(parts: Mapping[str, Geometry]) -> Geometry:
 
 
 def single_body(shape: Any, name: str) -> Geometry:
-    """Geometry of one closed body, with its end faces named."""
+    """Geometry of one closed body, with its end faces named.
+
+    Parameters
+    ----------
+    shape : shape of the CAD kernel
+        In mm.
+    name : str
+        Of its region.
+
+    Returns
+    -------
+    Geometry
+        Faces "+x", "-x" and so on lie at the ends of the body, all others are "side".
+
+    Raises
+    ------
+    InvalidInput
+        If the shape is not one body, or has no volume.
+    """
     solids = list(shape.solids)
     if len(solids) != 1:
         raise InvalidInput(f"{name} must be one closed body with a volume, got {len(solids)} solids")

@@ -286,7 +286,25 @@ PARTS: Mapping[str, Callable[..., Geometry]] = {
 
 
 def extruded_polygon(corners: Iterable[tuple[float, float]], *, foot: float, top: float) -> Any:
-    """Prism along z in the CAD kernel."""
+    """Prism along z in the CAD kernel.
+
+    Parameters
+    ----------
+    corners : iterable of tuple of float
+        Corners of its cross-section in the x-y plane, in mm.
+    foot, top : float
+        Ends along z, in mm.
+
+    Returns
+    -------
+    shape of the CAD kernel
+        Made a body by `single_body`.
+
+    Raises
+    ------
+    MissingPackage
+        If netgen is not installed.
+    """
     occ = cad_kernel()
     first, *others = ((float(x), float(y)) for x, y in corners)
     outline = occ.WorkPlane(occ.Axes((0, 0, foot), n=occ.Z, h=occ.X)).MoveTo(*first)

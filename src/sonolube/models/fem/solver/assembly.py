@@ -92,7 +92,17 @@ def assemble_matrices(model: Model) -> GlobalMatrices:
 
 
 def scalar_mass_matrix(model: Model) -> sparse.csc_array:
-    """Mass matrix of one displacement component, the same for all three; shape (n, n)."""
+    """Mass matrix of one displacement component, the same for all three.
+
+    Parameters
+    ----------
+    model : Model
+
+    Returns
+    -------
+    csc_array, shape (n, n)
+        Over the nodes. [kg]
+    """
     mesh = model.mesh
     points, weights = simplex_quadrature(2 * mesh.order, corners=4)
     value, gradient = shape_functions(mesh.order, points)
@@ -107,12 +117,25 @@ def scalar_mass_matrix(model: Model) -> sparse.csc_array:
 def tributary_areas(mesh: Mesh, face: str) -> Floats:
     r"""Tributary area of each node on a face: integrals of the shape functions over the face.
 
-    In m2, zero off the face; they sum to the area of the face.
-
     .. math:: A_a = \int N_a\, dA
 
     Divided by their sum they are the weights of the mean of a nodal field over the face, and the nodal forces of a unit
     force distributed evenly over it.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    face : str
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        In m2, zero off the face; they sum to the area of the face.
+
+    Raises
+    ------
+    UnknownName
+        If the mesh has no such face.
     """
     mesh.face_nodes(face)
     triangles = mesh.faces[face]
