@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from tests.reproduced import reproduced
 
-from sonolube.report import write_report
+from sonolube.reproduction import write_report
 
 
 @pytest.fixture(scope="session")

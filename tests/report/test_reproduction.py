@@ -8,10 +8,10 @@ from matplotlib.figure import Figure
 from pytest import approx, fixture
 
 from sonolube import __version__
-from sonolube.report.reproduction import counts, counts_by_kind, reproduction_files, summary_lines, validation_object
 from sonolube.reproduction import Finding, Reproduction, Row, RowKind, Verdict
 from sonolube.reproduction.chapters import ChapterFigure
 from sonolube.reproduction.claims import Claim, ClaimVerdict
+from sonolube.reproduction.report import counts, counts_by_kind, reproduction_files, summary_lines, validation_object
 from sonolube.reproduction.row import Alternative
 
 

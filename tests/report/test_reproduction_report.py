@@ -10,8 +10,7 @@ import pytest
 from tests.reproduced import reproduced
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.report import summary_lines, validation_object, write_report
-from sonolube.reproduction import Verdict, reproduction
+from sonolube.reproduction import Verdict, reproduction, summary_lines, validation_object, write_report
 from sonolube.storage.files import write_atomically
 
 KEYS = (

@@ -32,21 +32,17 @@ def mode_parts(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
     from sonolube.design.horns.shapes import SHAPES
     from sonolube.facts.materials import material, material_names, piezo_ceramic_names
     from sonolube.models.fem import PARTS
-    from sonolube.tasks.parts.named_parts import ALL_TRANSDUCERS, DEFAULT_MATERIAL
+    from sonolube.tasks.parts.named_parts import DEFAULT_MATERIAL, transducers
 
     del payload, places
+    offered = transducers()
     ceramics = piezo_ceramic_names()
     elastic = ("youngs_modulus", "poisson_ratio", "density")
     solids = {name: material(name) for name in material_names() if name not in ceramics}
     return {
         "parts": [
-            {
-                "name": name,
-                "sizes": _sizes(function),
-                "is_transducer": name in ALL_TRANSDUCERS,
-                "is_horn": name in SHAPES,
-            }
-            for name, function in {**PARTS, **ALL_TRANSDUCERS}.items()
+            {"name": name, "sizes": _sizes(function), "is_transducer": name in offered, "is_horn": name in SHAPES}
+            for name, function in {**PARTS, **offered}.items()
         ],
         "materials": [
             [name, solid.title] for name, solid in solids.items() if all(each in solid.properties for each in elastic)

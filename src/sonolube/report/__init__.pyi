@@ -8,9 +8,3 @@ from .measurement import (
     read_pin_on_disc_sheet as read_pin_on_disc_sheet,
 )
 from .page import Drawing as Drawing, Page as Page, PageTable as PageTable, rendered_files as rendered_files
-from .reproduction import (
-    reproduction_files as reproduction_files,
-    summary_lines as summary_lines,
-    validation_object as validation_object,
-    write_report as write_report,
-)

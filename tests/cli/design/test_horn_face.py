@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 from pytest import approx
 
-from sonolube.reproduction.chapter2.poisson_horn import friction_on_face, transition_region
+from sonolube.design.horns.face import transition_region
+from sonolube.reproduction.chapter2.poisson_horn import friction_on_face
 
 Program = Callable[..., Any]
 
@@ -33,7 +34,7 @@ def test_a_block_faster_than_the_face_is_driven_nowhere_and_that_is_a_caveat(son
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
-        (["brass"], "'brass' is not one of 'aluminium', 'steel'"),
+        (["brass"], "unknown horn 'brass'; known: aluminium, steel"),
         (["steel", "--amplitude", "0um"], "--amplitude must be positive"),
     ],
 )

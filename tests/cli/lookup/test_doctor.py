@@ -11,8 +11,8 @@ import pytest
 from pytest import MonkeyPatch
 
 from sonolube.extras import EXTRAS
-from sonolube.reference_solutions.self_checks import SELF_CHECKS
 from sonolube.report.results import installation as command
+from sonolube.report.results.self_checks import SELF_CHECKS
 
 Program = Callable[..., Any]
 

@@ -18,7 +18,7 @@ from sonolube.models.fem.results.part_modes import starting_size
 from sonolube.reproduction.chapter2.poisson_horn import ASSUMED_SOLIDS
 from sonolube.rig import read_rig
 from sonolube.rig.driven_rig import driven_rig
-from sonolube.tasks.parts.named_parts import ALL_TRANSDUCERS
+from sonolube.tasks.parts.named_parts import transducers
 
 RIGS = Path(__file__).parents[3] / "examples" / "rigs"
 FILES = sorted((RIGS / "modes").glob("*.toml"))
@@ -37,7 +37,7 @@ def part_of(path: Path) -> str:
 def test_natural_frequencies_on_a_coarse_mesh_are_those_of_the_file_within_its_error(path: Path) -> None:
     # quartic elements on the first mesh of the command without its grading, for the shipped file's graded ones
     stated = content(path)
-    made = ALL_TRANSDUCERS[part_of(path)]()
+    made = transducers()[part_of(path)]()
     mesh = change_order(generate_mesh(made.geometry, element_size=starting_size(made.geometry)), order=4)
     words = shlex.split(stated["command"])
     contact = words[words.index("--contact") + 1]
@@ -69,7 +69,7 @@ def test_the_file_of_the_collar_has_the_response_of_the_reduced_model_of_d_4_5()
 @pytest.mark.parametrize(("part", "ratio"), [("poisson_horn_aluminium", 0.33), ("poisson_horn_steel", 0.28)])
 def test_the_face_of_a_horn_bulges_by_poissons_ratio_times_the_strain_of_a_half_wave(part: str, ratio: float) -> None:
     # thin bar of length L: normal amplitude nu (t/2) pi/L of the axial one (D 3.23); by finite elements 6 to 10 % less
-    made = ALL_TRANSDUCERS[part]()
+    made = transducers()[part]()
     mesh = change_order(generate_mesh(made.geometry, element_size=starting_size(made.geometry)), order=3)
     model = made.whole(reduce_model(made.model(mesh), count=4, outputs=made.outputs))
     squares, shapes = np.linalg.eigh(model.stiffness.real)

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from pytest import approx
 
 from sonolube.checks import Floats
+from sonolube.design.horns.face import transition_region
 from sonolube.figure import publication_style
 from sonolube.models.fem import Model, block, generate_mesh, isotropic_medium, natural_modes, trajectory_ellipse
 from sonolube.models.friction import elliptical_traction_ratio
@@ -35,7 +36,6 @@ from sonolube.reproduction.chapter2.poisson_horn import (
     node_position,
     printed_shape,
     printed_solid,
-    transition_region,
 )
 from sonolube.reproduction.published_rigs import HORNS, Horn
 

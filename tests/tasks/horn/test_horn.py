@@ -38,7 +38,7 @@ def test_a_face_in_python_has_the_numbers_of_the_command(sonolube: Program, tmp_
 
 def test_a_face_is_refused_in_the_words_of_python() -> None:
     with raises(UnknownName, match="unknown horn 'brass'; known: aluminium, steel"):
-        sl.horn.face("brass")  # type: ignore[arg-type]
+        sl.horn.face("brass")
     with raises(InvalidInput, match=r"^amplitude must be positive"):
         sl.horn.face("steel", amplitude=0.0)
 

@@ -11,6 +11,7 @@ from tests.names import names_of
 from tests.tasks.running import running
 
 from sonolube.errors import InvalidInput, UnknownName
+from sonolube.studies import study_horn_face
 from sonolube.tasks.files import NamedBytes
 from sonolube.tasks.horn import horns
 from sonolube.tasks.impedance import computed_impedance as impedance
@@ -75,7 +76,7 @@ def test_a_medium_takes_the_properties_that_are_given_and_no_ceramic(monkeypatch
 
 
 def test_a_transducer_takes_the_wiring_that_it_has_and_a_part_the_usual_one(monkeypatch: MonkeyPatch) -> None:
-    monkeypatch.setattr(parts, "ALL_TRANSDUCERS", {"stack": block})
+    monkeypatch.setattr(parts, "transducers", lambda: {"stack": block})
     found: Any = parts.named_transducer("stack", {"length": "1 cm"}, ceramic="pzt", poled=None)
     assert (found.length, found.ceramic) == (approx(0.01), "pzt")
     with raises(InvalidInput, match=r"^drive \+z: stack has its own; leave it out, or take another part$"):
@@ -258,7 +259,7 @@ def test_a_preload_is_stated_once_and_at_an_amplitude() -> None:
 
 
 def test_the_ceramic_is_that_given_or_the_usual_one_of_a_part_or_transducer(monkeypatch: MonkeyPatch) -> None:
-    monkeypatch.setattr(impedance, "ALL_TRANSDUCERS", {"stack": lambda *, ceramic="pzt8": None})
+    monkeypatch.setattr(impedance, "transducers", lambda: {"stack": lambda *, ceramic="pzt8": None})
     assert impedance._ceramic_of("stack", "own") == "own"
     assert impedance._ceramic_of("stack", None) == "pzt8"
     assert impedance._ceramic_of("block", None) == "pic255"
@@ -294,7 +295,7 @@ def test_arguments_of_a_face_are_positive_and_a_face_that_drives_nowhere_is_a_ca
         with raises(InvalidInput, match=r"^amplitude must be positive$"):
             horns._positive(frequency="20 kHz", amplitude=0.0)
     friction: Any = SimpleNamespace(position=np.array([0.0, 1.0]), ratio=np.array([0.5, -0.5]))
-    answer = horns.FaceAnswer(horn="steel", friction=friction)
+    answer = horns.FaceAnswer(horn="steel", face=study_horn_face("steel"), friction=friction)
     monkeypatch.setattr(horns, "transition_region", lambda friction: (0.0, 1.0))
     assert answer.caveats() == ()
     monkeypatch.setattr(horns, "transition_region", lambda friction: (0.0, float("nan")))

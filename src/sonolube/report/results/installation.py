@@ -13,8 +13,8 @@ import sonolube
 from sonolube.extras import EXTRAS, installed_version, required_packages
 from sonolube.laboratory.drivers import known_drivers
 from sonolube.models.dynamics.warm_up import compiled_code_folder, is_compiled
-from sonolube.reference_solutions.self_checks import SELF_CHECKS
 from sonolube.report.blocks import Block, Rows
+from sonolube.report.results.self_checks import SELF_CHECKS
 
 _PROGRAMS = {  # names of each program, and what it is for
     "C compiler": (("cc", "gcc", "clang"), "compiles what control exports", "apt-get install gcc libc6-dev"),

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Floats
+from sonolube.design.horns.face import transition_region
 from sonolube.facts.published import si_value
 from sonolube.models import fem
 from sonolube.models.fem import FaceSpring, Model
@@ -103,6 +104,13 @@ def _within(centres: Floats, *, centre: float, half_length: float) -> NDArray[np
 REGION_ROWS: Final = {"aluminium": 1, "steel": 4}
 """Row of the transition region of each horn in Table 2.1, counted from 1."""
 
+
+def measured_region(horn: Horn) -> tuple[float, float]:
+    """Limits of the transition region of a horn in Table 2.1. [m]"""
+    start, end = (si_value(f"table-2.1-{side}-{REGION_ROWS[horn]}") for side in ("start", "end"))
+    return start, end
+
+
 _BENDING_LOAD: Final = 240.0  # N, the largest of D 2.1.2
 _ASSUMED: Final = "ends tapered to 3/4 in over their last inch, handbook moduli and densities"
 
@@ -156,7 +164,7 @@ def _transition_limits(horn: Horn, frequency: float, drive: str) -> list[tuple[f
         f"the horn of the printed mode ({_ASSUMED}), {drive}; springs of the contact of Table 3.1 with "
         f"Mindlin's ratio. The node lies at {friction.node / INCH:+.2f} in."
     )
-    return [(float(limit), note) for limit in horn_friction.transition_region(friction)]
+    return [(float(limit), note) for limit in transition_region(friction)]
 
 
 def _friction() -> Iterator[Row]:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from sonolube.charts import Axis, Chart, Line, Panel, Rule, Zone
 from sonolube.checks import Floats
 from sonolube.facts.materials import material
 from sonolube.facts.published import propagate_rounding, published_number, si_value
@@ -15,11 +14,10 @@ from sonolube.figure import COLOURS, LINES, MARKERS, ReportFigure, subplots
 from sonolube.models.actuator import free_bar_frequency, surface_trajectory
 from sonolube.models.fem import trajectory_ellipse
 from sonolube.reproduction import formulas
-from sonolube.reproduction.chapter2.horn_rows import REGION_ROWS, frequency_changes, horn_rows, node_positions
+from sonolube.reproduction.chapter2.horn_rows import frequency_changes, horn_rows, measured_region, node_positions
 from sonolube.reproduction.chapter2.poisson_horn import (
     FACE_END,
     INCH,
-    FaceFriction,
     FaceMotion,
     axial_mode,
     driven_face,
@@ -129,22 +127,6 @@ def _friction() -> "Figure":
     return figure
 
 
-def face_friction_chart(horn: Horn, friction: FaceFriction) -> Chart:
-    """Friction along the face of a horn, with the transition region of Table 2.1."""
-    first, last = (np.array([1e3 * end]) for end in _transition_region(horn))
-    parts = (
-        Zone(first=first, last=last, label="transition region, Table 2.1", colour="0.8"),
-        Line(x=1e3 * friction.position, y=100 * friction.ratio, label="computed"),
-        Rule(along="y", value=0.0, colour="0", dash=0),
-        Rule(value=1e3 * friction.node, label="node of the axial motion", colour="0"),
-    )
-    end = 1e3 * FACE_END
-    x = Axis("Position along the face, from its centre", "mm", lowest=-end, highest=end)
-    panel = Panel(x=x, y=Axis("Friction over that at rest", "%"), parts=parts)
-    title = f"{horn} horn; below zero the face drives the block"
-    return Chart(panels=(panel,), size=(5.0, 3.2), title=title, legend="bottom")
-
-
 def _nodes() -> "Figure":
     """Draw the position of the node of the steel horn under single asymmetries."""
     figure, axes = single_axes((7.2, 2.6))
@@ -160,14 +142,8 @@ def _nodes() -> "Figure":
 
 def _draw_transition_region(axes: "Axes", horn: Horn, *, color: str, alpha: float = 1.0, unit: float = INCH) -> None:
     """Draw the transition region of a horn in Table 2.1 as a band, over positions in a unit of that many metres."""
-    start, end = (place / unit for place in _transition_region(horn))
+    start, end = (place / unit for place in measured_region(horn))
     axes.axvspan(start, end, color=color, alpha=alpha, lw=0, label="transition region, Table 2.1")
-
-
-def _transition_region(horn: Horn) -> tuple[float, float]:
-    """Ends of the transition region of a horn in Table 2.1, in m."""
-    start, end = (si_value(f"table-2.1-{side}-{REGION_ROWS[horn]}") for side in ("start", "end"))
-    return start, end
 
 
 def _motion(horn: Horn) -> FaceMotion:

@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
 from sonolube.checks import Complexes, Floats
+from sonolube.design.horns.face import FaceFriction
 from sonolube.facts.materials import material
 from sonolube.facts.published import si_value
 from sonolube.models import fem
@@ -233,28 +234,13 @@ _STEPS: Final = 256
 FACE_END: Final = 1.5 * INCH
 """Distance from the centre to the ends of the flat face, the range of Table 2.1. [m]"""
 
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class FaceFriction:
-    """Friction of a block that slides on the vibrating face towards the node of its motion.
-
-    Parameters
-    ----------
-    position : ndarray, shape (k,)
-        Position along the face, from the centre. [m]
-    ratio : ndarray, shape (k,)
-        Friction over that on the face at rest; negative where the face drives the block.
-    node : float
-        Position of the node of the axial motion, in m.
-    """
-
-    position: Floats
-    ratio: Floats
-    node: float
-
-    def at(self, position: float) -> float:
-        """Friction ratio at a position in m, by linear interpolation. []"""
-        return float(np.interp(position, self.position, self.ratio))
+FACE_ASSUMPTIONS: Final = {
+    "horn": "ends tapered to 3/4 in over their last inch, handbook constants, by which both have the printed mode",
+    "contact": "springs of the contact of Table 3.1 with Mindlin's ratio, of the load of the dissertation's section"
+    " 3.1.4; nothing is fitted",
+    "elastic_loss": "loss factor 0.001",
+}
+"""What the friction along the face rests on that D does not print."""
 
 
 def driven_face(
@@ -306,24 +292,3 @@ def friction_along(
         steps=_STEPS,
     )
     return FaceFriction(position=position, ratio=ratio, node=node)
-
-
-def transition_region(friction: FaceFriction) -> tuple[float, float]:
-    """Limits of the transition region about the node, in which friction resists in both directions. [m]
-
-    A limit is NaN where the face drives the block nowhere on its side.
-    """
-    middle = int(np.argmin(np.abs(friction.position - friction.node)))
-    outwards = slice(middle, None, -1), slice(middle, None)
-    left, right = (_first_reversal(friction.position[side], friction.ratio[side]) for side in outwards)
-    return left, right
-
-
-def _first_reversal(position: Floats, ratio: Floats) -> float:
-    """First position at which the friction ratio changes sign, by linear interpolation. [m]"""
-    after = int(np.argmax(ratio < 0))
-    if not after:
-        return float("nan")
-    before = after - 1
-    fraction = ratio[before] / (ratio[before] - ratio[after])
-    return float(position[before] + fraction * (position[after] - position[before]))

@@ -1,14 +1,15 @@
-"""Task `reproduce`: published numbers of the dissertation beside computed ones."""
+"""Task `reproduce`: published numbers of the dissertation beside computed ones, by the study of it."""
 
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Unpack
 
-from sonolube.report import reproduction_files, summary_lines, validation_object
-from sonolube.reproduction import Reproduction, reproduction
+from sonolube.studies import StudyReport, study
 from sonolube.tasks.answer import Answer, Block, answer
 from sonolube.tasks.parameters import Parameter, Watched
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import task
+
+_STUDY = "dong2015"
 
 
 @task
@@ -21,23 +22,24 @@ def reproduce(
 
     Example: sonolube reproduce --chapter 3 --out out
     """
+    chosen = study(_STUDY)
     with stage("reproducing") as advance:
-        return ReproductionAnswer(result=reproduction(chapter=chapter, advance=advance))
+        return ReproductionAnswer(result=chosen.reproduce(chapter=chapter, advance=advance))
 
 
 @answer
 class ReproductionAnswer(Answer):
-    """Claims of a reproduction with their findings, and its rows, with the report and its figures."""
+    """Claims of a study with their findings, and its rows, with the report and its figures."""
 
-    result: Reproduction
+    result: StudyReport
 
     def blocks(self) -> Sequence[Block]:
         """Scorecard of the claims, and the number of rows by class and verdict."""
-        return summary_lines(self.result)
+        return self.result.lines()
 
     def object(self) -> dict[str, Any]:
         """Claims, rows, and the number of rows by class and verdict."""
-        return validation_object(self.result)
+        return self.result.object()
 
     def caveats(self) -> Sequence[str]:
         """Assumptions of the rows that contradict the dissertation."""
@@ -46,4 +48,4 @@ class ReproductionAnswer(Answer):
     def files(self) -> Mapping[str, str | bytes]:
         """Report, claims and rows as JSON, and every figure."""
         with stage("drawing") as advance:
-            return reproduction_files(self.result, advance=advance)
+            return self.result.files(advance=advance)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Unpack
 
 import numpy as np
 
+from sonolube.design.horns.face import FaceFriction, HornFace, face_friction_chart, transition_region
 from sonolube.design.horns.profile import HornProfile, horn_drawing, horn_notes, horn_profile, profile_dxf
 from sonolube.design.horns.shapes import TunableBody, body_from_geometry, horn_body
 from sonolube.design.horns.tuning import HornDesign, face_motion, horn_axis_chart, section_motion, tuned_horn
@@ -23,9 +24,7 @@ from sonolube.models.fem.results.mode_surfaces import SurfaceModes, surface_mode
 from sonolube.models.fem.results.part_modes import frequency_text, longest_axis
 from sonolube.report import Drawing
 from sonolube.report.results.parts import horns as results
-from sonolube.reproduction.chapter2.poisson_effect import face_friction_chart
-from sonolube.reproduction.chapter2.poisson_horn import FaceFriction, friction_on_face, transition_region
-from sonolube.reproduction.published_rigs import Horn
+from sonolube.studies import study_horn_face
 from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.files import InputFile
 from sonolube.tasks.parameters import File, KeyValues, Number, Parameter, Quantity, Watched
@@ -37,17 +36,10 @@ from sonolube.text.units import to_si
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_ASSUMED = {
-    "horn": "ends tapered to 3/4 in over their last inch, handbook constants, by which both have the printed mode",
-    "contact": "springs of the contact of Table 3.1 with Mindlin's ratio, of the load of the dissertation's section"
-    " 3.1.4; nothing is fitted",
-    "elastic_loss": "loss factor 0.001",
-}
-
 
 @task
 def face(
-    horn: Annotated[Horn, Parameter("Material of the horn: aluminium or steel.", "HORN")],
+    horn: Annotated[str, Parameter("Material of the horn: aluminium or steel.", "HORN")],
     *,
     frequency: Annotated[Number, Quantity("Of the drive on the horn's end.", "frequency")] = "20kHz",
     amplitude: Annotated[Number, Quantity("Of the driven end, zero to peak.", "vibration_amplitude")] = "8.5um",
@@ -66,9 +58,10 @@ def face(
     (-0.35, 0.68)
     """
     at, height, speed = _positive(frequency=frequency, amplitude=amplitude, sliding_speed=sliding_speed)
+    modelled = study_horn_face(horn)
     with stage("solving"):
-        found = friction_on_face(horn, frequency=at, axial_amplitude=height, sliding_speed=speed)
-    return FaceAnswer(horn=horn, friction=found)
+        found = modelled.friction(frequency=at, axial_amplitude=height, sliding_speed=speed)
+    return FaceAnswer(horn=horn, face=modelled, friction=found)
 
 
 def _positive(**given: Number) -> list[float]:
@@ -82,18 +75,19 @@ def _positive(**given: Number) -> list[float]:
 
 @answer
 class FaceAnswer(Answer):
-    """Friction along the face of a Poisson horn, and its regions beside those of Table 2.1."""
+    """Friction along the face of a Poisson horn, and its regions beside those measured."""
 
-    horn: Horn
+    horn: str
+    face: HornFace
     friction: FaceFriction
 
     def blocks(self) -> Sequence[Block]:
         """Node, regions, and the greatest motor force."""
-        return results.face_blocks(self.horn, self.friction)
+        return results.face_blocks(self.horn, self.face, self.friction)
 
     def object(self) -> dict[str, Any]:
         """Node, limits of the transition region computed and measured, least friction ratio."""
-        return results.face_object(self.horn, self.friction)
+        return results.face_object(self.horn, self.face, self.friction)
 
     def caveats(self) -> Sequence[str]:
         """A side of the face that drives nowhere."""
@@ -103,11 +97,13 @@ class FaceAnswer(Answer):
 
     def assumptions(self) -> Mapping[str, str]:
         """Shape, contact and loss that D does not print."""
-        return _ASSUMED
+        return self.face.assumptions
 
     def figures(self) -> Mapping[str, Drawing]:
         """Friction over the position on the face."""
-        return {f"horn-{self.horn}-face": Drawing(chart=lambda: face_friction_chart(self.horn, self.friction))}
+        return {
+            f"horn-{self.horn}-face": Drawing(chart=lambda: face_friction_chart(self.horn, self.face, self.friction))
+        }
 
     def files(self) -> Mapping[str, Dataset]:
         """Friction ratio over the position as netCDF."""

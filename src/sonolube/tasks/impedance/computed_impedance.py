@@ -24,7 +24,7 @@ from sonolube.rig.datasets import LabelledArrays, labelled
 from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import File, Number, Parameter, Quantity, Sizes, Watched
-from sonolube.tasks.parts.named_parts import ALL_TRANSDUCERS, PART_WIRING, Axis, PartSizes, named_transducer, part_name
+from sonolube.tasks.parts.named_parts import PART_WIRING, Axis, PartSizes, named_transducer, part_name, transducers
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
 from sonolube.text.units import format_si, to_si
@@ -146,9 +146,9 @@ def _tension(
 
 def _ceramic_of(part: str, ceramic: str | None) -> str:
     """Name of the ceramic that was given, or of that of a part."""
-    if ceramic is not None or part not in ALL_TRANSDUCERS:
+    if ceramic is not None or part not in transducers():
         return ceramic or PART_WIRING["ceramic"]
-    return str(inspect.signature(ALL_TRANSDUCERS[part]).parameters["ceramic"].default)
+    return str(inspect.signature(transducers()[part]).parameters["ceramic"].default)
 
 
 @answer

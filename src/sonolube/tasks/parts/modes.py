@@ -174,7 +174,7 @@ def modes(
 
 def _refuse_unused(part: str, *, points: InputFile | None, contact: str | None) -> None:
     """Refuse arguments that the part and the others leave without effect."""
-    if part in parts.ALL_TRANSDUCERS:
+    if part in parts.transducers():
         own = ("material", "youngs_modulus", "poisson_ratio", "density")
         refuse_unused(*own, because=f"for {part}, which has its own; it is for other parts")
     if points is None:
@@ -185,8 +185,8 @@ def _refuse_unused(part: str, *, points: InputFile | None, contact: str | None) 
 
 def _require_output(part: str, sizes: parts.PartSizes, contact: str) -> None:
     """Refuse a contact of a part without a drive, or at an output that it lacks."""
-    if part not in parts.ALL_TRANSDUCERS:
-        known = ", ".join(parts.ALL_TRANSDUCERS)
+    if part not in parts.transducers():
+        known = ", ".join(parts.transducers())
         raise InvalidInput(f"{shown('contact')} {contact}: {part} has no drive; it is for transducers: {known}")
     outputs = parts.named_transducer(part, sizes).outputs
     if contact not in outputs:

@@ -6,12 +6,12 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any, Literal
 
-from sonolube.dong2015.transducers import DONG_2015_TRANSDUCERS
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.facts.materials import material, piezo_ceramic_names
 from sonolube.models import fem
 from sonolube.models.fem import FixedSupport
 from sonolube.models.fem.results.part_modes import SupportedPart
+from sonolube.studies import study_transducers
 from sonolube.tasks.files import InputFile, NamedBytes, file_path
 from sonolube.tasks.parameters import File
 from sonolube.tasks.task import shown
@@ -23,13 +23,21 @@ Axis = Literal["x", "y", "z"]
 PartSizes = Mapping[str, str | float]
 """Sizes of a part by name, as text with units or as numbers in SI."""
 
-ALL_TRANSDUCERS = {**fem.TRANSDUCERS, **DONG_2015_TRANSDUCERS}
-"""General transducers and those of the dissertation, by name."""
-
 PART_WIRING: Mapping[str, str] = MappingProxyType({"ceramic": "pic255", "poled": "z", "drive": "+z", "ground": "-z"})
 """Ceramic, poling and electrodes of a part that is no transducer, where the options are absent."""
 
 _LARGEST = 1e6  # m; the CAD kernel fails on larger parts with messages of its own
+
+
+def transducers() -> Mapping[str, Callable[..., fem.Transducer]]:
+    """General transducers and those of studies, by name.
+
+    Returns
+    -------
+    mapping of str to callable
+        Of a name that both have, that of the study, whose sizes have defaults.
+    """
+    return {**fem.TRANSDUCERS, **study_transducers()}
 
 
 def named_part(part: InputFile, sizes: PartSizes) -> fem.Geometry:
@@ -38,7 +46,7 @@ def named_part(part: InputFile, sizes: PartSizes) -> fem.Geometry:
     Parameters
     ----------
     part : str, Path or NamedBytes
-        A name of `PARTS` or `ALL_TRANSDUCERS`, or a STEP file, whose name ends in .step or .stp.
+        A name of `PARTS` or of `transducers()`, or a STEP file, whose name ends in .step or .stp.
     sizes : mapping of str to str or float
         Such as {"length": "127 mm"}, or numbers in SI.
 
@@ -56,10 +64,10 @@ def named_part(part: InputFile, sizes: PartSizes) -> fem.Geometry:
     name = part_name(part)
     if is_step(part):
         return step_part(part, sizes)
-    if name in ALL_TRANSDUCERS:
+    if name in transducers():
         return named_transducer(part, sizes).geometry
     if name not in fem.PARTS:
-        raise UnknownName.among((*fem.PARTS, *ALL_TRANSDUCERS), kind="part", name=name)
+        raise UnknownName.among((*fem.PARTS, *transducers()), kind="part", name=name)
     return fem.PARTS[name](**sizes_in_si(name, fem.PARTS[name], sizes))
 
 
@@ -128,7 +136,7 @@ def named_transducer(part: InputFile, sizes: PartSizes, **wiring: str | None) ->
     """
     name = part_name(part)
     given = {option: value for option, value in wiring.items() if value is not None}
-    if name not in ALL_TRANSDUCERS:
+    if name not in transducers():
         known = {**PART_WIRING, **given}
         return fem.poled_part(
             named_part(part, sizes),
@@ -137,7 +145,7 @@ def named_transducer(part: InputFile, sizes: PartSizes, **wiring: str | None) ->
             driven=known["drive"],
             grounded=known["ground"],
         )
-    function = ALL_TRANSDUCERS[name]
+    function = transducers()[name]
     taken = inspect.signature(function).parameters
     for option, value in given.items():
         if option not in taken:
@@ -240,7 +248,7 @@ def supported_part(
         If a size is missing or the material is one without modes of its own.
     """
     name = part_name(part)
-    transducer = named_transducer(part, sizes) if name in ALL_TRANSDUCERS else None
+    transducer = named_transducer(part, sizes) if name in transducers() else None
     geometry = named_part(part, sizes) if transducer is None else transducer.geometry
     own = None if transducer is None else transducer.media
     planes = () if transducer is None else transducer.fixed

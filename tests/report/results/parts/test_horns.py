@@ -9,6 +9,7 @@ from pytest import MonkeyPatch, approx
 
 from sonolube.report.blocks import Rows
 from sonolube.report.results.parts import horns as results
+from sonolube.studies import study_horn_face
 
 NAN = float("nan")
 
@@ -26,7 +27,7 @@ def rows_of(blocks: Any) -> dict[str, str]:
 
 def test_the_face_has_its_node_and_regions_beside_those_of_the_table(monkeypatch: MonkeyPatch) -> None:
     monkeypatch.setattr(results, "transition_region", lambda friction: (-8e-3, 7e-3))
-    blocks = results.face_blocks("aluminium", face())
+    blocks = results.face_blocks("aluminium", study_horn_face("aluminium"), face())
     assert blocks[0] == "Poisson horn of aluminium, positions from the centre of the face"
     # Table 2.1: a quarter of an inch either way; the face ends after an inch and a half
     assert rows_of(blocks) == {
@@ -38,7 +39,7 @@ def test_the_face_has_its_node_and_regions_beside_those_of_the_table(monkeypatch
         "Motor region, right": "7 mm to 38.1 mm",
         "Greatest motor force, of the friction at rest": "75%",
     }
-    found = results.face_object("aluminium", face())
+    found = results.face_object("aluminium", study_horn_face("aluminium"), face())
     assert found["node_position"] == {"value": 0.5e-3, "unit": "m"}
     assert found["transition_region"] == {"start": {"value": -8e-3, "unit": "m"}, "end": {"value": 7e-3, "unit": "m"}}
     assert found["measured_transition_region"]["start"]["value"] == approx(-6.35e-3)
@@ -51,11 +52,11 @@ def test_a_face_that_drives_nowhere_resists_up_to_its_ends(monkeypatch: MonkeyPa
     monkeypatch.setattr(results, "transition_region", lambda friction: (NAN, NAN))
     held = face()
     held.ratio = np.array([0.25, 1.0])
-    found = rows_of(results.face_blocks("steel", held))
+    found = rows_of(results.face_blocks("steel", study_horn_face("steel"), held))
     assert found["Transition region"] == "-38.1 mm to 38.1 mm"
     assert found["Greatest motor force, of the friction at rest"] == "0%"
     assert found["the same, measured"] == "2.54 mm to 5.08 mm (Table 2.1)"
-    content = results.face_object("steel", held)
+    content = results.face_object("steel", study_horn_face("steel"), held)
     assert content["transition_region"] == {"start": {"value": None, "unit": "m"}, "end": {"value": None, "unit": "m"}}
 
 

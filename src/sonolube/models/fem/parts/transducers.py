@@ -318,4 +318,4 @@ def _joint(geometry: Geometry, one: str, other: str, end: str) -> str:
 
 
 TRANSDUCERS: Mapping[str, Callable[..., Transducer]] = MappingProxyType({"stack": stack_transducer})
-"""Parametric transducers by name; `sonolube.dong2015` has those of the dissertation."""
+"""Parametric transducers by name; `sonolube.studies` finds those of studies."""

@@ -4,29 +4,25 @@ from collections.abc import Mapping
 from math import isnan
 from typing import Any
 
+from sonolube.design.horns.face import FaceFriction, HornFace, transition_region
 from sonolube.design.horns.tuning import HornDesign, amplitude_limits, loaded_frequency
 from sonolube.facts.materials import Material
-from sonolube.facts.published import si_value
 from sonolube.report.blocks import Block, Rows
 from sonolube.report.results.record_object import picked
-from sonolube.reproduction.chapter2.horn_rows import REGION_ROWS
-from sonolube.reproduction.chapter2.poisson_horn import FACE_END, FaceFriction, transition_region
-from sonolube.reproduction.published_rigs import Horn
 from sonolube.text.units import format_like, format_si
 from sonolube.vocabulary import si
 
 
-def face_blocks(horn: Horn, friction: FaceFriction) -> list[Block]:
+def face_blocks(horn: str, face: HornFace, friction: FaceFriction) -> list[Block]:
     """Node, regions, and the greatest motor force."""
-    ends = (-FACE_END, FACE_END)  # where the face drives nowhere
+    ends = (-face.end, face.end)  # where the face drives nowhere
     low, high = (end if isnan(at) else at for at, end in zip(transition_region(friction), ends, strict=True))
-    measured = _measured(horn)
-    node, *known = format_like((friction.node, low, high, *measured, *ends), "m")
+    node, *known = format_like((friction.node, low, high, *face.measured, *ends), "m")
     rows = [
         ("Node of the axial motion", node),
         ("Friction at the node, of that at rest", f"{friction.at(friction.node):.0%}"),
         ("Transition region", f"{known[0]} to {known[1]}"),
-        ("the same, measured", f"{known[2]} to {known[3]} (Table 2.1)"),
+        ("the same, measured", f"{known[2]} to {known[3]} ({face.source})"),
         ("Motor region, left", f"{known[4]} to {known[0]}"),
         ("Motor region, right", f"{known[1]} to {known[5]}"),
         ("Greatest motor force, of the friction at rest", f"{max(0.0, -friction.ratio.min()):.0%}"),
@@ -34,10 +30,10 @@ def face_blocks(horn: Horn, friction: FaceFriction) -> list[Block]:
     return [f"Poisson horn of {horn}, positions from the centre of the face", Rows(rows)]
 
 
-def face_object(horn: Horn, friction: FaceFriction) -> dict[str, Any]:
+def face_object(horn: str, face: HornFace, friction: FaceFriction) -> dict[str, Any]:
     """Node, limits of the transition region computed and measured, least friction ratio, for JSON."""
     low, high = (None if isnan(limit) else limit for limit in transition_region(friction))
-    start, end = _measured(horn)
+    start, end = face.measured
     return {
         "horn": horn,
         **si({"node_position": friction.node}, unit="m"),
@@ -46,12 +42,6 @@ def face_object(horn: Horn, friction: FaceFriction) -> dict[str, Any]:
         **si({"friction_ratio_at_node": friction.at(friction.node)}, unit=""),
         **si({"least_friction_ratio": float(friction.ratio.min())}, unit=""),
     }
-
-
-def _measured(horn: Horn) -> tuple[float, float]:
-    """Limits of the transition region in Table 2.1."""
-    start, end = (si_value(f"table-2.1-{side}-{REGION_ROWS[horn]}") for side in ("start", "end"))
-    return start, end
 
 
 _NEAREST = 3  # neighbouring modes printed

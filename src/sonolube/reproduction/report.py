@@ -1,5 +1,6 @@
 """Reproduction report: published numbers beside computed ones and the claims, as a page, JSON and text."""
 
+import base64
 import json
 from collections import Counter
 from collections.abc import Sequence
@@ -10,10 +11,11 @@ from typing import Any, Final
 
 from sonolube import __version__
 from sonolube.facts.published import errata
-from sonolube.report.page import Advance, Drawing, drawn, embedded, html
-from sonolube.report.results.record_object import picked
+from sonolube.report import Drawing, rendered_files
 from sonolube.reproduction import Finding, Reproduction, Row, RowKind, Verdict
 from sonolube.storage.files import write_atomically
+from sonolube.studies import Advance
+from sonolube.text.plain_text import printable
 
 KIND_NAMES: Final = {
     RowKind.PUBLISHED_FORMULA: "published formula, on published numbers",
@@ -121,9 +123,11 @@ def reproduction_files(
     figures: dict[str, str | bytes] = {}
     pictures: dict[str, str] = {}
     for done, figure in enumerate(result.figures, start=1):
-        contents = drawn(Drawing(draw=figure.draw), forms=("png", "svg", "pdf"))
-        figures |= {f"figures/{figure.name}.{form}": content for form, content in contents.items()}
-        pictures[figure.name] = embedded(contents["png"])
+        contents = rendered_files({figure.name: Drawing(draw=figure.draw)})
+        figures |= {f"figures/{name}": content for name, content in contents.items()}
+        png = contents[f"{figure.name}.png"]
+        assert isinstance(png, bytes)
+        pictures[figure.name] = base64.b64encode(png).decode()
         advance(figure.title, done, len(result.figures))
     return {
         "reproduction.html": _page(result, pictures),
@@ -176,8 +180,8 @@ def _claim_object(one: Finding) -> dict[str, Any]:
     """Claim with its finding and the ids of its rows, for JSON."""
     claim = one.claim
     return {
-        **picked(claim, "id", "statement", "source"),
-        **picked(one, "claimed", "found"),
+        **{name: getattr(claim, name) for name in ("id", "statement", "source")},
+        **{name: getattr(one, name) for name in ("claimed", "found")},
         "verdict": one.verdict.value,
         "judged": claim.judged,
         "decisive_rows": list(claim.decisive),
@@ -195,9 +199,13 @@ def _row_object(row: Row) -> dict[str, Any]:
 
 def _page(result: Reproduction, pictures: dict[str, str]) -> str:
     """HTML of the report: scorecard and counts, then figures and rows by chapter."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
     chapters = sorted({row.chapter for row in result.rows})
-    return html(
-        "reproduction.html",
+    environment = Environment(
+        loader=PackageLoader("sonolube.reproduction"), autoescape=True, undefined=StrictUndefined, trim_blocks=True
+    )
+    page = environment.get_template("reproduction.html").render(
         version=__version__,
         result=result,
         counts=counts(result.rows),
@@ -215,3 +223,4 @@ def _page(result: Reproduction, pictures: dict[str, str]) -> str:
         pictures=pictures,
         errata=errata(),
     )
+    return printable(page)
