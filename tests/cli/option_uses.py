@@ -68,7 +68,7 @@ MAP = ("--over", "sliding.sliding_speed=10mm/s,20mm/s", "--over", "drive.voltage
 # Options that say how an answer is computed or kept: the answer stays the same.
 EXECUTION = {"--once", "--force", "--real-time", "--yes", "--workers", "--scheduler", "--chunk", "--keep"}
 # Options of the place of files, which every run here gives, and of the form of text.
-PLACES = {"--out", "--json", "--help", "--brief"}
+PLACES = {"--out", "--json", "--help", "--full"}
 # A run takes a minute, or needs a test of its own; tests of these commands try them.
 TESTED_ELSEWHERE = {
     *(

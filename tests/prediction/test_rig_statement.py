@@ -15,7 +15,7 @@ from sonolube.prediction.applicability import Applicability
 from sonolube.prediction.inputs import own_runs, rig_inputs
 from sonolube.prediction.posterior import learned
 from sonolube.prediction.predictive import Laboratory, RunCheck, rig_prediction
-from sonolube.prediction.rig_statement import heat_words, prediction_attributes, statement, wear_sentence
+from sonolube.prediction.rig_statement import basis_words, heat_words, prediction_attributes, statement, wear_sentence
 from sonolube.rig import read_rig
 from sonolube.rig.datasets import LabelledArray, LabelledArrays
 
@@ -51,18 +51,24 @@ def outcome(low: float, high: float) -> str:
 @mark.parametrize(
     ("low", "high", "words"),
     [
-        (0.21, 0.58, "Friction falls by 21 to 58 % (80 %)."),
-        (-0.004, 0.3, "Friction falls by 0 to 30 % (80 %)."),  # half a per cent is none
-        (-0.006, 0.3, "Friction goes from 1 % more to 30 % less (80 %)."),
-        (-0.15, 0.3, "Friction goes from 15 % more to 30 % less (80 %)."),
-        (-0.2, -0.1, "Friction rises by 10 to 20 % (80 %)."),
+        (0.21, 0.58, "Friction falls by about 40 %. Likely between 21 and 58 % (8 chances in 10)."),
+        (-0.004, 0.3, "Friction falls by about 15 %. Likely between 0 and 30 % (8 chances in 10)."),  # half a per cent
+        (-0.006, 0.3, "Friction falls by about 15 %. Likely between 1 % more and 30 % less (8 chances in 10)."),
+        (-0.3, 0.14, "Friction rises by about 8 %. Likely between 30 % more and 14 % less (8 chances in 10)."),
+        (-0.2, -0.1, "Friction rises by about 15 %. Likely between 10 and 20 % more (8 chances in 10)."),
         (-0.004, 0.0049, "Friction does not change."),
-        (-0.004, 0.0051, "Friction falls by 0 to 1 % (80 %)."),
-        (-0.0051, 0.004, "Friction goes from 1 % more to 0 % less (80 %)."),
+        (-0.004, 0.0051, "Friction hardly changes. Likely between 0 and 1 % (8 chances in 10)."),
+        (-0.0051, 0.004, "Friction hardly changes. Likely between 1 % more and 0 % less (8 chances in 10)."),
     ],
 )
-def test_the_change_of_friction_is_said_by_the_ends_of_its_interval(low: float, high: float, words: str) -> None:
+def test_the_change_of_friction_is_said_by_its_median_and_its_interval(low: float, high: float, words: str) -> None:
     assert outcome(low, high) == words
+
+
+@mark.parametrize(("own", "words"), [(0, "none of yours"), (1, "1 run of yours"), (3, "3 runs of yours")])
+def test_the_tests_behind_a_prediction_are_counted(own: int, words: str) -> None:
+    found = statement(prediction(basis=basis_words(20, own)))[0]
+    assert f"(8 chances in 10), from 20 published tests on other rigs and {words}. " in found
 
 
 def test_an_unknown_change_and_an_untested_direction_are_said() -> None:
@@ -70,7 +76,10 @@ def test_an_unknown_change_and_an_untested_direction_are_said() -> None:
     assert found.startswith("Friction falls by anything from 0 to 100 %")
     assert found.endswith("along the normal of the contact.")
     along = statement(prediction(tested="Vibration along the sliding, tested"))[0]
-    assert along == "Vibration along the sliding, tested: friction falls by 20 to 60 % (80 %)."
+    assert along == (
+        "Vibration along the sliding, tested: friction falls by about 40 %."
+        " Likely between 20 and 60 % (8 chances in 10)."
+    )
 
 
 def test_sentences_stand_in_their_order_and_empty_ones_are_left_out() -> None:

@@ -377,3 +377,16 @@ def test_a_body_states_what_the_catalogue_lacks_of_it_and_the_spread_of_a_class(
     steel = KnownBody(material=material("steel"))  # a class
     assert set(steel.entries("contact.harder", role="disc").uncertainty) == {"contact.harder.youngs_modulus"}
     assert "youngs_modulus" in steel.entries("contact.harder", role="disc").tables["contact.harder"]
+
+
+@pytest.mark.parametrize(
+    ("pin", "disc", "title"),
+    [
+        ("brass", "stainless_steel_304", "Brass pin on stainless steel AISI 304 disc"),
+        ("steel", "titanium_6al4v", "Steel pin on titanium alloy Ti-6Al-4V disc"),
+        ("copper", "diamond_like_carbon", "Copper pin on diamond-like carbon film disc"),
+    ],
+)
+def test_the_title_of_a_rig_names_its_bodies_as_a_person_would(pin: str, disc: str, title: str) -> None:
+    found = tomllib.loads(new_rig_text(replace(KNOWN, pin=pin, disc=disc)))
+    assert found["title"] == title

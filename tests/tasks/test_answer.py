@@ -69,8 +69,7 @@ def test_caveats_that_question_all_stand_below_the_first_line_and_others_below_t
     below = ["  caveat: far beyond", Rows([("load", "3 N")]), "  caveat: rough"]
     assumed = ["  assumed mass: guessed", "  assumed load: typical"]
     assert found.every_block() == ["Own result", *below, *assumed]
-    assert found.every_block(brief=True) == ["Own result", *below, "  2 assumptions of the rig file are not listed"]
-    assert Own(content=LOAD).every_block(brief=True) == ["Own result", *below]
+    assert Own(content=LOAD).every_block() == ["Own result", *below]
     assert Own(content=LOAD, parts=()).every_block() == ["  caveat: far beyond", "  caveat: rough"]
     assert str(found).splitlines() == [
         "Own result", "  caveat: far beyond", "  load  3 N", "  caveat: rough", *assumed, "  refused: is empty",

@@ -119,7 +119,7 @@ def command_of(
                 folder=typed.get("out") or (None if task.writes_on_request else Path(task.folder or out)),
                 report=typed.get("report"),
                 as_json=typed["json"],
-                brief=typed.get("brief", False),
+                full=typed.get("full", True),
                 command=" ".join(context.command_path.split()[:2]),
             )
 
@@ -215,7 +215,7 @@ def _delivery(task: Task, marks: Mapping[str, Mark]) -> list[Argument]:
         page: Any = Annotated[Path | None, info, OutputFile()]
         arguments.append(argument("report", page, None))
     if any(isinstance(mark, RigParameter) for mark in marks.values()):
-        arguments.append(argument("brief", options.Brief, False))
+        arguments.append(argument("full", options.Full, False))
     return [*arguments, argument("json", options.Json, False)]
 
 

@@ -207,12 +207,15 @@ class Measure:
 
     Parameters
     ----------
+    key : str
+        "run_here", "run_at_other_speed" or "contact_stiffness".
     label : str
         In words.
     share_left : float
         Expected width of the 80 % interval of the friction ratio after it, over the width now.
     """
 
+    key: str
     label: str
     share_left: float
 
@@ -278,8 +281,11 @@ def measures(
     near, far = _two_points(found, inputs)
     narrowed = Target(near)
     made = [
-        Measure(label="one run at this point", share_left=narrowed.share_left(observed=near, noise=_RUN)),
         Measure(
+            key="run_here", label="one run at this point", share_left=narrowed.share_left(observed=near, noise=_RUN)
+        ),
+        Measure(
+            key="run_at_other_speed",
             label=f"one run at this point, for the ratio at {_FARTHER:g} times the speed",
             share_left=Target(far).share_left(observed=near, noise=_RUN),
         ),
@@ -301,11 +307,12 @@ def _stiffness_measures(ratio: Floats, length: Floats, probes: Sequence[Probe]) 
         told = float(np.mean(probe.resolvable))  # share of contacts of which the shift tells
         left = told * target.share_left(observed=length, noise=deviation) + 1 - told
         label = f"contact stiffness by the {probe.name} ({low} to {high} when pressed)"
-        made.append(Measure(label=label, share_left=left))
+        made.append(Measure(key="contact_stiffness", label=label, share_left=left))
     if made:
         return made
     return [
         Measure(
+            key="contact_stiffness",
             label=f"contact stiffness within {100 * noise:.0f} %",
             share_left=target.share_left(observed=length, noise=noise),
         )

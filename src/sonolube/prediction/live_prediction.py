@@ -410,6 +410,7 @@ def _described(uncertain: Sequence[Input]) -> dict[str, NDArray[Any]]:
 def _measures(better: Sequence[Measure]) -> dict[str, NDArray[Any]]:
     """Measurements that would narrow the interval, in words, and what each leaves of it."""
     return {
+        "measure_key": np.array([each.key for each in better], dtype=str),
         "measure_label": np.array([each.label for each in better], dtype=str),
         "measure_share_left": np.array([each.share_left for each in better]),
     }

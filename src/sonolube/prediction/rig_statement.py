@@ -9,12 +9,13 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.prediction.applicability import NORMAL_VIBRATION, Applicability, extrapolation_caveats
 from sonolube.prediction.bodies import pair_of, softer_hardness, wear_statement, worn_body
+from sonolube.prediction.evidence import published_rigs
 from sonolube.prediction.evidence_posterior import EvidencePosterior
 from sonolube.prediction.hierarchy import PROBABILITIES, central_interval, sorted_quantiles
 from sonolube.prediction.inputs import OwnRuns, RigInputs
 from sonolube.prediction.predictive import Laboratory, RigPrediction, RunCheck
 from sonolube.prediction.verdict import point_verdict
-from sonolube.prediction.within_plane import NO_WEAR, RIGID_MODEL, tested_words
+from sonolube.prediction.within_plane import NO_WEAR, RIGID_MODEL, plane_rigs, tested_words
 from sonolube.rig import Rig
 from sonolube.rig.contact_temperature import heat_sentence
 from sonolube.rig.datasets import LabelledArray, LabelledArrays
@@ -121,7 +122,8 @@ def prediction_attributes(
         "friction_law": found.draws.posterior.closure.name,
         "vibration_amplitude": inputs.amplitude.value,
         "sliding_speed": inputs.sliding_speed,
-        "runs": 0 if own is None else own.tested.friction_ratio.size,
+        "runs": (runs := 0 if own is None else own.tested.friction_ratio.size),
+        "basis": basis_words(_published_tests(rig, evidence), runs),
         "disagreeing_runs": "" if found.check is None else " ".join(str(place + 1) for place in found.check.outliers),
     }
     if evidence is not None:
@@ -139,6 +141,13 @@ def prediction_attributes(
     return attributes
 
 
+def _published_tests(rig: Rig, evidence: EvidencePosterior | None) -> int:
+    """Number of published tests behind a prediction of a rig, those of an own posterior included."""
+    own = () if evidence is None else evidence.own
+    shipped = published_rigs() if rig.direction.is_normal else plane_rigs()
+    return sum(each.friction_ratio.size for each in shipped) + sum(source.points for source in own)
+
+
 def _directed_outcome(prediction: "xr.Dataset | LabelledArrays") -> str:
     """Sentence on change of friction and direction; how far another direction than the normal was tested is first."""
     tested = prediction.attrs.get("tested")
@@ -147,17 +156,36 @@ def _directed_outcome(prediction: "xr.Dataset | LabelledArrays") -> str:
 
 
 def _outcome(prediction: "xr.Dataset | LabelledArrays") -> str:
-    """Sentence on the change of friction."""
+    """Sentences on the change of friction: the median, and the 80 % interval with the tests behind it."""
     if prediction.attrs["unknown"]:
         return "Friction falls by anything from 0 to 100 %: a dry prediction does not hold."
     low, high = (100 * each for each in interval(prediction, "friction_reduction"))
     if max(abs(low), abs(high)) < _NONE:
         return "Friction does not change."
+    middle = 100 * float(np.median(prediction["friction_reduction"].to_numpy()))
+    change = "hardly changes" if abs(middle) < _NONE else f"{_falls(middle)} by about {abs(middle):.0f} %"
+    basis = prediction.attrs.get("basis", "")
+    return f"Friction {change}. Likely between {change_range(low, high)} (8 chances in 10){basis}."
+
+
+def _falls(reduction: float) -> str:
+    """Verb of a reduction."""
+    return "falls" if reduction > 0 else "rises"
+
+
+def change_range(low: float, high: float, *, joined: str = "and") -> str:
+    """Ends of a reduction in percent, with their directions where these differ or are a rise."""
     if high <= 0:
-        return f"Friction rises by {-high:.0f} to {-low:.0f} % (80 %)."
+        return f"{max(-high, 0):.0f} {joined} {-low:.0f} % more"
     if low < -_NONE:
-        return f"Friction goes from {-low:.0f} % more to {high:.0f} % less (80 %)."
-    return f"Friction falls by {max(low, 0):.0f} to {high:.0f} % (80 %)."
+        return f"{-low:.0f} % more {joined} {high:.0f} % less"
+    return f"{max(low, 0):.0f} {joined} {high:.0f} %"
+
+
+def basis_words(tests: int, own: int) -> str:
+    """Published and own tests behind a prediction, as the end of a sentence."""
+    runs = "none of yours" if own == 0 else f"{own} run{'s' if own > 1 else ''} of yours"
+    return f", from {tests} published tests on other rigs and {runs}"
 
 
 def _advice(prediction: "xr.Dataset | LabelledArrays") -> str:

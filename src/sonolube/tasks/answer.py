@@ -11,11 +11,13 @@ from sonolube.errors import InvalidInput, UnknownName
 from sonolube.report.blocks import (
     Block as Block,
     Rows as Rows,
+    ScreenBlock as ScreenBlock,
     Table as Table,
     Verbatim as Verbatim,
     block_html,
     text_lines as text_lines,
 )
+from sonolube.report.first_screen import LongAnswer
 from sonolube.report.results.record_object import scalar_dataset
 from sonolube.vocabulary import si as si
 
@@ -63,6 +65,10 @@ class Answer(ABC):
     @abstractmethod
     def object(self) -> dict[str, Any]:
         """Object for JSON, all quantities in SI, without caveats and assumptions."""
+
+    def first_blocks(self) -> Sequence[ScreenBlock]:
+        """Content of a first screen, what matters most first, where `blocks` is longer than a screen."""
+        return self.blocks()
 
     def caveats(self) -> Sequence[str]:
         """Reasons for which the result may not hold, a line each."""
@@ -119,19 +125,30 @@ class Answer(ABC):
         """Caveats, those first that stand above the result."""
         return [*self.leading_caveats(), *self.caveats()]
 
-    def every_block(self, *, brief: bool = False) -> list[Block]:
-        """Content with caveats and assumptions, as all ways in show it; where brief, assumptions are only counted."""
-        assumptions = [f"  assumed {key}: {reason}" for key, reason in self.assumptions().items()]
-        if brief and assumptions:
-            assumptions = [f"  {len(assumptions)} assumptions of the rig file are not listed"]
+    def every_block(self) -> list[Block]:
+        """Content with caveats and assumptions, as all ways in show it."""
         first, *rest = self.blocks() or [""]
         return [
             *([first] if first else []),
             *(f"  caveat: {caveat}" for caveat in self.leading_caveats()),
             *rest,
             *(f"  caveat: {caveat}" for caveat in self.caveats()),
-            *assumptions,
+            *(f"  assumed {key}: {reason}" for key, reason in self.assumptions().items()),
         ]
+
+    def full_lines(self, *, line_length: int | None) -> list[str]:
+        """Lines of text of all content."""
+        return text_lines(self.every_block(), line_length=line_length)
+
+    def first_screen(self, files: Sequence[str] = ()) -> LongAnswer:
+        """What a first screen shows in place of all content, with lines on the files that were written."""
+        return LongAnswer(
+            blocks=self.first_blocks(),
+            leading_caveats=self.leading_caveats(),
+            caveats=self.caveats(),
+            assumptions=self.assumptions(),
+            files=files,
+        )
 
     def json_object(self) -> dict[str, Any]:
         """Object for JSON with caveats and assumptions."""

@@ -58,7 +58,7 @@ def aligned(rows: Sequence[tuple[str, str]], *, line_length: int | None = None) 
     if line_length is not None:  # a value without spaces, such as a path, is wider than the others
         longest = max(map(_longest_word, names), default=0), max(map(_longest_word, values), default=0)
         _narrowed(widths, (longest[0], min(longest[1], _MIN_ROOM)), line_length - len(_INDENT) - len(_GAP))
-    return [line for row in rows for line in _row_lines(row, widths)]
+    return [line for row in rows for line in row_lines(row, widths)]
 
 
 def grid(rows: Sequence[Sequence[str]], *, line_length: int | None = None) -> list[str]:
@@ -71,7 +71,7 @@ def grid(rows: Sequence[Sequence[str]], *, line_length: int | None = None) -> li
         room = line_length - len(_INDENT) - len(_GAP) * (len(widths) - 1)
         if not _narrowed(widths, [max(map(_longest_word, column)) for column in columns], room):
             return _one_below_the_other(rows, line_length)
-    return [line for row in rows for line in _row_lines(row, widths)]
+    return [line for row in rows for line in row_lines(row, widths)]
 
 
 def _narrowed(widths: list[int], least: Sequence[int], room: int) -> bool:
@@ -84,7 +84,7 @@ def _narrowed(widths: list[int], least: Sequence[int], room: int) -> bool:
     return True
 
 
-def _row_lines(row: Sequence[str], widths: Sequence[int]) -> list[str]:
+def row_lines(row: Sequence[str], widths: Sequence[int]) -> list[str]:
     """Lines of a row, whose cells are wrapped to the widths of their columns."""
     cells = [
         [cell] if len(cell) <= room else wrap(cell, room, break_long_words=False)

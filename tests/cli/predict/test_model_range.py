@@ -117,11 +117,11 @@ def test_beyond_the_gap_at_rest_wear_is_by_the_model_that_holds_and_friction_wit
 def test_a_prediction_tells_its_inputs_intervals_and_what_was_measured(
     sonolube: Program, rigs: Path, tmp_path: Path
 ) -> None:
-    ran = sonolube("predict", rigs / "tribometer.toml", "--out", tmp_path)
+    ran = sonolube("predict", rigs / "tribometer.toml", "--out", tmp_path, "--full")
     lines = ran.out.splitlines()
     assert lines[1].startswith("This point is within the range of the friction model and of the published tests.")
-    assert lines[2].startswith("Friction falls by ")
-    assert lines[2].endswith(" % (80 %). The vibration is along the normal of the contact.")
+    assert lines[2].startswith("Friction falls by about ")
+    assert lines[2].endswith(" and none of yours. The vibration is along the normal of the contact.")
     assert any(line.startswith("  measured A-1: friction ratio 0.37") for line in lines)
     (amplitude,) = (line.split("  ") for line in lines if line.startswith("  amplitude "))
     words = [word.strip() for word in amplitude if word]

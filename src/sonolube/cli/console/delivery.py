@@ -13,8 +13,9 @@ import typer
 from sonolube.cli.console.figure_style import prepare_matplotlib
 from sonolube.cli.console.options import progress
 from sonolube.errors import InvalidInput
+from sonolube.report.first_screen import MAX_LINES, file_lines, short_file_line
 from sonolube.storage.user_files import expect_target
-from sonolube.tasks.answer import Answer, text_lines
+from sonolube.tasks.answer import Answer
 from sonolube.text.plain_text import printable
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ def deliver(
     folder: Path | None = Path(),
     report: Path | None = None,
     as_json: bool = False,
-    brief: bool = False,
+    full: bool = True,
     command: str = "sonolube",
 ) -> None:
     """Write the files of an answer, then print it as text or as one JSON object."""
@@ -41,10 +42,7 @@ def deliver(
         content = content if answer.is_lookup else content | {"files": list(map(str, written))}
         _print(json.dumps(content, indent=2, allow_nan=False))
     else:
-        lines = [
-            *text_lines(answer.every_block(brief=brief), line_length=line_width()),
-            *_file_lines(written, folder or Path()),
-        ]
+        lines = _lines(answer, written, folder or Path(), full=full)
         if lines:
             _print(printable("\n".join(lines)))
     for reason in answer.refusals().values():
@@ -135,10 +133,10 @@ def _print(text: str) -> None:
         raise InvalidInput(f"standard output: cannot be written: {failure.strerror}") from None
 
 
-def _file_lines(written: Sequence[Path], folder: Path) -> list[str]:
-    """Files as lines of text: several below a folder of the answer's own by their number."""
-    below: dict[Path, list[Path]] = {}
-    for path in written:
-        place = path if path.parent == folder or folder not in path.parents else path.parent
-        below.setdefault(place, []).append(path)
-    return [f"  {paths[0]}" if len(paths) == 1 else f"  {place}: {len(paths)} files" for place, paths in below.items()]
+def _lines(answer: Answer, written: Sequence[Path], folder: Path, *, full: bool) -> list[str]:
+    """Text of an answer with the files that were written; a first screen of one that is longer, unless all is asked."""
+    width = line_width()
+    lines = [*answer.full_lines(line_length=width), *file_lines(written, folder=folder)]
+    if full or len(lines) <= MAX_LINES:
+        return lines
+    return answer.first_screen(short_file_line(written)).lines(line_length=width, rest="--full")

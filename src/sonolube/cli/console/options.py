@@ -42,7 +42,7 @@ Changes = Annotated[
     typer.Option("--set", metavar="KEY=VALUE", help="Replace an entry, such as sliding.sliding_speed=87mm/s."),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object, all quantities in SI.")]
-Brief = Annotated[bool, typer.Option("--brief", help="Leave out the assumptions of the rig file.")]
+Full = Annotated[bool, typer.Option("--full", help="Print all of the answer in place of a first screen.")]
 Load = Annotated[str | None, typer.Option(metavar="FORCE", help="Normal load instead of the rig's, such as 40N.")]
 Amplitude = Annotated[
     AmplitudeSource | None,

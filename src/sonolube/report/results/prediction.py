@@ -5,7 +5,9 @@ from typing import Any, Final
 import numpy as np
 
 from sonolube.prediction.hierarchy import PROBABILITIES
-from sonolube.prediction.rig_statement import interval
+from sonolube.prediction.rig_statement import change_range, interval
+from sonolube.report.blocks import Bar, Bars
+from sonolube.rig import Rig
 from sonolube.rig.datasets import LabelledArrays
 from sonolube.rig.power import POWERS, with_former_key
 from sonolube.text.units import format_quantity, format_si
@@ -35,6 +37,66 @@ def quantity_rows(prediction: LabelledArrays) -> list[list[str]]:
     return rows + [
         [quantity(name).meaning, "not known", *("" for _ in PROBABILITIES)] for name in unknown_names(prediction)
     ]
+
+
+CHANGE_SCALE: Final = ("no change", "50 % less", "gone")
+"""Words of the scale of a reduction."""
+
+_BAR_ENDS: Final = (0.1, 0.25, 0.5, 0.75, 0.9)
+
+
+def change_bars(prediction: LabelledArrays) -> Bars:
+    """Changes of friction and wear as intervals, and the power to supply."""
+    coefficient = format_si(_median(prediction, "friction_coefficient"), "", digits=2)
+    bars = [_change_bar(prediction, "friction_reduction", "friction", f"coefficient {coefficient}")]
+    if "wear_reduction" in prediction.variables:
+        is_open = interval(prediction, "wear_reduction")[0] < 0
+        bars.append(_change_bar(prediction, "wear_reduction", "wear", "may not fall" if is_open else ""))
+    else:
+        bars.append(Bar(name="wear", text="not known"))
+    power = next((each["text"] for each in operating_texts(prediction) if each["name"] == POWERS[0]), "not known")
+    return Bars(CHANGE_SCALE, [*bars, Bar(name="power to supply", text=power)])
+
+
+def _change_bar(prediction: LabelledArrays, name: str, label: str, note: str) -> Bar:
+    """Interval of a reduction with its median in percent."""
+    ends = np.quantile(prediction[name].to_numpy(), _BAR_ENDS)
+    return Bar(name=label, text=f"{-100 * ends[2]:+.0f} % {note}".rstrip(), ends=ends.tolist())
+
+
+def measurement_objects(prediction: LabelledArrays) -> list[dict[str, Any]]:
+    """Key, words and share of the interval that each further measurement would leave."""
+    names = ("key", "label", "share_left")
+    columns = (column(prediction, f"measure_{name}") for name in names)
+    return [dict(zip(names, row, strict=True)) for row in zip(*columns, strict=True)]
+
+
+def one_run_object(prediction: LabelledArrays) -> dict[str, Any] | None:
+    """Reduction of friction as one run at the operating point would leave it, about the median of now; None unknown."""
+    left = column(prediction, "measure_share_left")
+    if not left:
+        return None
+    middle = _median(prediction, "friction_reduction")
+    found = {
+        f"interval_{100 * each:.0f}": [
+            middle + left[0] * (end - middle) for end in interval(prediction, "friction_reduction", each)
+        ]
+        for each in (0.5, 0.8)
+    }
+    before, after = (
+        change_range(*(100 * end for end in ends), joined="to")
+        for ends in (interval(prediction, "friction_reduction"), found["interval_80"])
+    )
+    reduction = {"median": middle, **found, "unit": quantity("friction_reduction").unit}
+    return {"friction_reduction": reduction, "text": f"{before} becomes about {after}"}
+
+
+def operating_line(rig: Rig, prediction: LabelledArrays) -> str:
+    """Rig with its load, speed and vibration."""
+    attributes = prediction.attrs
+    parts = [(rig.normal_load, "N"), (attributes["sliding_speed"], "m/s"), (attributes["vibration_amplitude"], "m")]
+    frequency = "" if rig.drive is None else f" at {format_si(rig.drive.frequency, 'Hz')}"
+    return f"{rig.title}, {', '.join(format_si(value, unit) for value, unit in parts)}{frequency}"
 
 
 def input_rows(prediction: LabelledArrays) -> list[list[str]]:

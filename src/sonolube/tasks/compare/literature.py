@@ -67,13 +67,24 @@ class LiteratureAnswer(Answer):
 
     def blocks(self) -> Sequence[Block]:
         """Studies with their text and numbers, and the rig."""
-        lines: list[Block] = [line for study in self.studies for line in results.study_lines(study)]
-        lines += list(map(results.own_point_line, self.others))
-        for point in [self.point] if self.point else []:
-            place = f"{format_si(_speed(point), 'm/s')}, {format_si(point.nominal_pressure or 0.0, 'Pa')}"
-            reduction = self.outside or f"computed friction reduction {100 * point.friction_reduction:.0f} %"
-            lines.append(f"{point.label}: {place}, {reduction}")
-        return lines
+        return [*self._study_lines(), *self._rig_lines()]
+
+    def first_blocks(self) -> Sequence[Block]:
+        """The same, the rig first."""
+        return [*self._rig_lines(), *self._study_lines()]
+
+    def _study_lines(self) -> list[str]:
+        """Studies with their text and numbers."""
+        lines = [line for study in self.studies for line in results.study_lines(study)]
+        return lines + list(map(results.own_point_line, self.others))
+
+    def _rig_lines(self) -> list[str]:
+        """Rig with its place and its reduction; none without one."""
+        if self.point is None:
+            return []
+        place = f"{format_si(_speed(self.point), 'm/s')}, {format_si(self.point.nominal_pressure or 0.0, 'Pa')}"
+        reduction = self.outside or f"computed friction reduction {100 * self.point.friction_reduction:.0f} %"
+        return [f"{self.point.label}: {place}, {reduction}"]
 
     def object(self) -> dict[str, Any]:
         """Studies, and speed, pressure and friction reduction of the rig."""

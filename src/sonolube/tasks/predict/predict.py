@@ -14,7 +14,7 @@ from sonolube.report.results import prediction as results
 from sonolube.report.results.rig_point import measured_object, measured_on, measured_text
 from sonolube.rig import Rig
 from sonolube.rig.datasets import LabelledArrays
-from sonolube.tasks.answer import Answer, Block, Dataset, Table, answer
+from sonolube.tasks.answer import Answer, Block, Dataset, ScreenBlock, Table, answer
 from sonolube.tasks.own_evidence import Evidence, evidence_of
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import (
@@ -123,6 +123,20 @@ class PredictionAnswer(Answer):
             *(f"  measured {one.label}: {measured_text(one)}" for one in self.measured),
         ]
 
+    def first_blocks(self) -> Sequence[ScreenBlock]:
+        """Statement on friction, changes of friction and wear with power as bars, and what one run would leave."""
+        contradiction, said = self.prediction.attrs["contradiction"], self.prediction.attrs["statement"].split("\n")
+        verdict, one_run = self._verdict(), results.one_run_object(self.prediction)
+        return [
+            results.operating_line(self.rig, self.prediction),
+            *([self.read_as] if self.read_as else []),
+            *said[: 2 if contradiction else 1],
+            *([] if verdict.verdict == Verdict.IN_RANGE else [f"This point is {verdict.words}."]),
+            results.change_bars(self.prediction),
+            *([f"One run of yours here: {one_run['text']}; see sonolube plan."] if one_run else []),
+            *(f"  measured {one.label}: {measured_text(one)}" for one in self.measured),
+        ]
+
     def object(self) -> dict[str, Any]:
         """Statement, quantities with median and intervals, inputs and weights of the friction models."""
         found = self.prediction
@@ -135,6 +149,8 @@ class PredictionAnswer(Answer):
             **dict.fromkeys(results.unknown_names(found)),
             "inputs": results.column(found, "input_text"),
             "share_left_by_measurement": results.measurement_shares(found),
+            "measurements": results.measurement_objects(found),
+            "one_run": results.one_run_object(found),
             "stiffness_probes": self._probes(),
             "measured": [measured_object(one) for one in self.measured],
             "interval_share_left": dict(zip(results.column(found, "input"), shares, strict=True)),

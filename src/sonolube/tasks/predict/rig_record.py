@@ -104,6 +104,25 @@ class RigRecord(Answer):
 
     def blocks(self) -> Sequence[Block]:
         """Load, quantities with the meaning and unit of the vocabulary, and text but for the status."""
+        return [self._title(), Rows([*self._leading_rows(), *self._record_rows(), *self.rows])]
+
+    def first_blocks(self) -> Sequence[Block]:
+        """The same with what the numbers leave out before them."""
+        return [self._title(), Rows([*self._leading_rows(), *self.rows, *self._record_rows()])]
+
+    def _title(self) -> str:
+        """Rig with its load."""
+        return f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}"
+
+    def _leading_rows(self) -> list[tuple[str, str]]:
+        """Verdict and headline."""
+        if self.verdict is None:
+            return list(self.headline)
+        is_told = self.verdict.verdict == Verdict.OUTSIDE_MODEL_RANGE  # by the reason of the record
+        return [("this point is", self.verdict.words if is_told else self.verdict.text), *self.headline]
+
+    def _record_rows(self) -> list[tuple[str, str]]:
+        """Quantities and texts of the record, and what was measured."""
         known, values = quantities(), result_quantities(self.result)
         rows = [
             (known[name].meaning, self._text(name, value))
@@ -115,12 +134,7 @@ class RigRecord(Answer):
             for name, text in result_texts(self.result).items()
             if name not in _UNPRINTED
         ]
-        rows += [(f"measured {one.label}", measured_text(one)) for one in self.measured]
-        rows = [*self.headline, *rows]
-        if self.verdict is not None:
-            is_told = self.verdict.verdict == Verdict.OUTSIDE_MODEL_RANGE  # by the reason of the record
-            rows = [("this point is", self.verdict.words if is_told else self.verdict.text), *rows]
-        return [f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}", Rows([*rows, *self.rows])]
+        return rows + [(f"measured {one.label}", measured_text(one)) for one in self.measured]
 
     def object(self) -> dict[str, Any]:
         """Title of the rig, text and quantities."""

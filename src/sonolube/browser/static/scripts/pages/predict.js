@@ -2,9 +2,10 @@
 import {html, useEffect, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {Caveats, Failure, RefusedNote, TextTable} from '../answer.js';
 import {ask, callTask, inTurn, useLate, useReply} from '../api.js';
+import {Bar, ChangeBars} from '../change-bars.js';
 import {Chart} from '../chart.js';
 import {focusField, MaterialChoices, RunsChoice, typed, uploadOf, useFile} from '../fields.js';
-import {Button, capital, Card, classes, Refusal} from '../parts.js';
+import {Button, Card, classes, Refusal} from '../parts.js';
 import {useRig, Workspace} from '../rig-panel.js';
 import {RunsTable} from '../runs-table.js';
 import {addressOf, change, decode, encode, present, setEntry, useApp} from '../state.js';
@@ -25,15 +26,12 @@ const INTERVAL = '80 %';
 const SPEED = 'sliding.sliding_speed';
 const AMPLITUDE = 'vibration.vibration_amplitude';
 const VOLTAGE = 'drive.voltage_peak_to_peak';
-const MEASURES_HEAD = 'what would narrow it';
-/** Fields that a line of advice is about, by a word in it. @type {[RegExp, string[]][]} */
-const ADVISED = [
-  [/decay length|stiffness/i, ['contact.decay_length', 'contact.normal_stiffness', 'contact.pair.effective_modulus']],
-  [/dry friction/i, ['friction.friction_coefficient']],
-  [/amplitude/i, [AMPLITUDE, 'actuator.amplitude_per_volt', VOLTAGE]],
-  [/speed/i, [SPEED]],
-  [/run at this point/i, ['runs']],
-];
+/** Fields that a measurement is about, by its key. @type {Record<string, string[]>} */
+const ADVISED = {
+  contact_stiffness: ['contact.decay_length', 'contact.normal_stiffness', 'contact.pair.effective_modulus'],
+  run_at_other_speed: [SPEED],
+  run_here: ['runs'],
+};
 
 /**
  * Arguments of the task for a state.
@@ -73,23 +71,76 @@ function numbersOf(answer) {
 }
 
 /**
- * The numbers on screen.
+ * Changes of friction and wear as bars, and the power to supply.
+ * @param {{answer: Content}} props
+ */
+function Changes({answer}) {
+  const {friction_reduction: friction, wear_reduction: wear, friction_coefficient: coefficient} = answer.answer;
+  /** @type {{name: string, text: string}[]} */
+  const powers = answer.answer.operating_point;
+  const power = powers.find(({name}) => name === 'power_to_supply')?.text ?? 'not known';
+  const charge = powers.find(({name}) => name === 'charging_power')?.text;
+  return html`
+    <${ChangeBars}
+      test="changes"
+      rows=${[
+        {name: 'Friction', change: friction, note: coefficient && `coefficient ${coefficient.median.toPrecision(2)}`},
+        {name: 'Wear', change: wear, note: wear?.interval_80[0] < 0 ? 'may not fall' : '', text: 'not known'},
+        {name: 'Power to supply', text: charge ? `${power}; ${charge} charge the capacitance` : power},
+      ]}
+    />
+  `;
+}
+
+/**
+ * All numbers on request.
  * @param {{answer: Content}} props
  */
 function Numbers({answer}) {
   const {quantities, point} = numbersOf(answer);
   return html`
-    <dl class="numbers" data-test="numbers">
-      ${[...quantities, ...point].map(
-        ([label, [median, interval]]) => html`<div key=${label} class="number">
-          <dt>${label}</dt>
-          <dd class="median">${median}</dd>
-          ${interval && html`<dd class="interval">${interval}</dd>`}
-        </div>`,
-      )}
-    </dl>
-    <p class="hint numbers-note">Median, and below it the interval of ${INTERVAL}.</p>
+    <details class="numbers-of-all">
+      <summary>All numbers</summary>
+      <dl class="numbers" data-test="numbers">
+        ${[...quantities, ...point].map(
+          ([label, [median, interval]]) => html`<div key=${label} class="number">
+            <dt>${label}</dt>
+            <dd class="median">${median}</dd>
+            ${interval && html`<dd class="interval">${interval}</dd>`}
+          </div>`,
+        )}
+      </dl>
+      <p class="hint numbers-note">Median, and below it the interval of ${INTERVAL}.</p>
+    </details>
   `;
+}
+
+/**
+ * Interval of friction as it is, and as one run of the user's own would leave it.
+ * @param {{answer: Content, beside: Texts}} props
+ */
+function Surer({answer, beside}) {
+  const {friction_reduction: now, one_run: after} = answer.answer;
+  if (!after) return null;
+  return html`<${Card} id="surer-title" title="Make it surer" data-test="surer">
+    <div class="surer">
+      <div>
+        <${Bar} change=${now} label="now" />
+        <${Bar} change=${after.friction_reduction} label="after one run of yours" />
+      </div>
+      <p>One run of yours here: ${after.text}.</p>
+      <div class="row">
+        <${Button}
+          kind="button is-main"
+          onClick=${() => document.getElementById('own-runs')?.focus()}
+          data-test="add-runs"
+        >
+          Add my runs
+        <//>
+        <a class="button" href=${addressOf('design', present({part: 'plan', ...beside}))} data-test="plan-runs">Plan</a>
+      </div>
+    </div>
+  <//>`;
 }
 
 /**
@@ -100,29 +151,28 @@ function Sharpen({answer, beside}) {
   const tables = tablesOf(answer);
   /** @type {string[]} */
   const probes = answer.answer.stiffness_probes ?? [];
-  const {
-    heads: [what, left],
-    rows,
-  } = tables.find(({heads}) => heads[0] === MEASURES_HEAD) ?? {heads: [], rows: []};
-  if (!rows.length) return null;
+  /** @type {{key: string, label: string, share_left: number}[]} */
+  const measurements = answer.answer.measurements;
+  if (!measurements.length) return null;
   return html`<${Card} id="sharpen-title" title="What would sharpen this" data-test="sharpen">
     <ul class="measures">
-      ${rows.map(([label, share]) => {
-        const keys = ADVISED.find(([word]) => word.test(label))?.[1] ?? [];
+      ${measurements.map(({key, label, share_left: left}) => {
+        const keys = ADVISED[key] ?? [];
         const open = () => (keys[0] === 'runs' ? document.getElementById('own-runs')?.focus() : keys.some(focusField));
+        const narrower = `${Math.round(100 * (1 - left))} %`;
         return html`<li key=${label}>
           <${Button} kind="measure" onClick=${open} disabled=${!keys.length}>
             <span class="measure-name">${label}</span>
             <span class="measure-share">
-              <meter min="0" max="100" value=${parseFloat(share)} aria-label=${`${left}: ${share}`}></meter>
-              ${share}
+              <meter min="0" max="1" value=${1 - left} aria-label=${`narrower by ${narrower}`}></meter>
+              ${narrower} narrower
             </span>
           <//>
         </li>`;
       })}
     </ul>
     <p class="hint">
-      ${capital(what)}, and what each ${left}. <a
+      How much narrower each would make the interval of friction. <a
         href=${addressOf('design', present({part: 'plan', ...beside}))}
         data-test="plan-tests"
       >
@@ -315,7 +365,7 @@ export default function Predict() {
     <//>`;
   }
   const [outcome, ...others] = content.answer.statement;
-  const [first, rest] = outcome.split(/(?<=\.) (?=[A-Z])(.*)/s);
+  const [first, likely, ...rest] = outcome.split(/(?<=\.) (?=[A-Z])/);
   const chart = content.charts[0];
   const lead = html`
     <p class="overline">${content.answer.rig}</p>
@@ -328,13 +378,14 @@ export default function Predict() {
       <//>
       <span class="status" role="status" data-test="status">${isDim && !failure ? 'Computing…' : ''}</span>
     </div>
+    <p class="lead-likely" data-test="likely">${likely}</p>
     <${Failure} failure=${failure} shown=${shown} />
     <${RefusedNote} refused=${refused} />
   `;
   return html`<${Workspace} lead=${lead} extra=${extra} onFile=${onFile}>
-    <div class=${isDim ? 'is-dim' : ''} aria-busy=${isWaiting}>
-      <${Numbers} answer=${content} />
-      <section class="card" aria-label="Friction over amplitude and over speed">
+    <div class=${classes('first-screen', {'is-dim': isDim})} aria-busy=${isWaiting}>
+      <${Changes} answer=${content} />
+      <section class="card is-figure" aria-label="Friction over amplitude and over speed">
         ${
           chart &&
           html`<${Chart}
@@ -345,13 +396,17 @@ export default function Predict() {
           />`
         }
       </section>
+      <${Surer} answer=${content} beside=${{pin, disc, runs}} />
+      <${Numbers} answer=${content} />
       ${ownRuns}
       <${Kept} kept=${kept} now=${content} onRemove=${remove} />
       <div class="columns">
-        <div class="stack"><${Sharpen} answer=${content} beside=${{pin, disc, runs}} /></div>
+        <div class="stack">
+          <${Sharpen} answer=${content} beside=${{pin, disc, runs}} />
+        </div>
         <div class="stack">
           <${Card} id="more-title" title="In words">
-            ${[rest, ...others].filter(Boolean).map((line) => html`<p key=${line}>${line}</p>`)}
+            ${[rest.join(' '), ...others].filter(Boolean).map((line) => html`<p key=${line}>${line}</p>`)}
             ${
               /** @type {Block[]} */ (content.blocks)
                 .slice(-2)
