@@ -230,10 +230,10 @@ def test_each_step_says_whether_it_sticks_and_slips() -> None:
 
 
 def test_a_zero_that_was_taken_off_and_a_missing_rotation_are_said() -> None:
-    assert _zero_taken_off(STEPS[0]) == ()
+    assert _zero_taken_off(STEPS[0], "N") == ()
     from dataclasses import replace
 
-    (said,) = _zero_taken_off(replace(STEPS[0], force_zero=0.031))
+    (said,) = _zero_taken_off(replace(STEPS[0], force_zero=0.031), "N")
     assert said.startswith("31 mN, the mean force at rest before sliding")
     assert "in the friction over 23 s, and no wobble taken off" in _unknown_rotation(STEPS)
 

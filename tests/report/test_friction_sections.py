@@ -9,6 +9,7 @@ from pytest import MonkeyPatch, approx, raises
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.friction.rotation import MotorCalibration
+from sonolube.measurement.friction.stated_load import StatedLoad
 from sonolube.measurement.friction.windows import SteadyStateOnset
 from sonolube.report.measured import friction, friction_steps
 from sonolube.report.measured.friction import (
@@ -38,18 +39,78 @@ def uncertainty(sheet: Sheet, name: str) -> float | None:
     return next(value.uncertainty for value in sheet.values if value.name == name)
 
 
-def test_a_coefficient_has_its_mean_scatter_and_windows_and_no_force(tmp_path: Path) -> None:
+def test_a_coefficient_has_its_mean_scatter_windows_and_steady_state_and_no_force(tmp_path: Path) -> None:
     noise = 0.01 * np.random.default_rng(3).standard_normal(T.size)
     path = written(tmp_path / "mu.csv", **{TIME: T, "friction_coefficient": 0.3 + noise})
-    sheet = friction_sheet(path, settings=FrictionSettings(sliding_speed=0.02))
+    sheet = friction_sheet(path, settings=FrictionSettings(sliding_speed=0.02, window_duration=0.5))
     found = values(sheet)
     assert found["mean_coefficient"] == approx(0.3, abs=1e-3)
     assert found["friction_coefficient_deviation"] == approx(0.01, rel=0.05)
     assert found["friction_coefficient_fluctuation"] == approx(0.01, rel=0.05)
-    assert not any(name.startswith("steady") or "force" in name for name in found)
+    assert found["steady_friction_coefficient"] == approx(0.3, abs=1e-3)
+    assert not any("force" in name for name in found)
+    assert any("give the load" in reason for reason in sheet.not_found)
     assert next(each for each in sheet.values if each.name == "mean_coefficient").label == (
         "Mean coefficient of the whole recording"
     )
+
+
+def stepped(folder: Path, *, factor: float = 1.0, channel: str = "friction_coefficient") -> Path:
+    """Coefficient of 0.30 without and of 0.12 at 20 V, times a factor, in steps of 5 s; 0.001 of noise."""
+    driven = (T // 5) % 2 == 1
+    noise = 0.001 * np.random.default_rng(5).standard_normal(T.size)
+    channels = {channel: factor * (np.where(driven, 0.12, 0.30) + noise), "voltage_peak_to_peak (V)": 20.0 * driven}
+    return written(folder / "steps.csv", **{TIME: T}, **channels)
+
+
+def steps_of(sheet: Sheet) -> dict[str, list[float | None]]:
+    table = next(table for table in sheet.tables if table.name == "steps")
+    names = [column.name for column in table.columns]
+    return {name: [row[at] for row in table.rows] for at, name in enumerate(names)}  # type: ignore[misc]
+
+
+def test_a_coefficient_has_its_reduction_at_the_steps_of_the_voltage_without_a_load(tmp_path: Path) -> None:
+    sheet = friction_sheet(stepped(tmp_path), settings=FrictionSettings())
+    found = steps_of(sheet)
+    assert found["friction_coefficient"] == approx([0.30, 0.12, 0.30, 0.12], abs=2e-4)
+    assert found["friction_reduction"][1] == approx(0.6, abs=1e-3)
+    assert not any("force" in name for name in found)
+    assert not any(table.name.startswith("stick_slip") for table in sheet.tables)
+
+
+@pytest.mark.parametrize(("channel", "factor"), [("friction_coefficient", 1.0), (FORCE, 5.0)])
+def test_a_load_gives_force_and_coefficient_with_the_uncertainties_of_load_and_zero(
+    channel: str, factor: float, tmp_path: Path
+) -> None:
+    # At 5 N with 0.1 N and a zero of 0.02 N: sqrt(0.02^2 + (0.30 0.1)^2)/5 = 0.0072111 and
+    # sqrt(0.02^2 + (0.12 0.1)^2)/5 = 0.0046648; the zero in the reduction, 0.6 0.02/1.5 = 0.008.
+    load = StatedLoad(normal_load=5.0, normal_load_uncertainty=0.1, force_zero_uncertainty=0.02)
+    path = stepped(tmp_path, factor=factor, channel=channel)
+    found = steps_of(friction_sheet(path, settings=FrictionSettings(load=load)))
+    assert found["friction_force"] == approx([1.50, 0.60, 1.50, 0.60], abs=1e-3)
+    assert found["friction_coefficient"] == approx([0.30, 0.12, 0.30, 0.12], abs=2e-4)
+    uncertainties = found["friction_coefficient_uncertainty"]
+    assert uncertainties == approx([0.0072111, 0.0046648, 0.0072111, 0.0046648], rel=5e-3)
+    assert found["friction_reduction_uncertainty"][1] == approx(0.008, rel=0.02)
+
+
+def test_the_levels_of_a_force_have_their_coefficients_under_a_load(tmp_path: Path) -> None:
+    noise = 0.01 * np.random.default_rng(3).standard_normal(T.size)
+    path = written(tmp_path / "force.csv", **{TIME: T, FORCE: 1.5 + noise})
+    load = StatedLoad(normal_load=5.0, normal_load_uncertainty=0.1)
+    sheet = friction_sheet(path, settings=FrictionSettings(sliding_speed=0.02, window_duration=0.5, load=load))
+    found = values(sheet)
+    assert found["mean_coefficient"] == approx(0.3, abs=1e-3)
+    assert found["steady_friction_coefficient"] == approx(0.3, abs=1e-3)
+    assert uncertainty(sheet, "mean_coefficient") == approx(0.3 * 0.1 / 5.0, rel=0.01)
+
+
+def test_a_load_without_uncertainties_leaves_an_unknown_one_unknown() -> None:
+    coefficient, deviation = StatedLoad(normal_load=5.0).coefficient(1.5, uncertainty=None)
+    assert coefficient == approx(0.3)
+    assert deviation is None
+    with raises(InvalidInput, match="normal_load must be positive"):
+        StatedLoad(normal_load=0.0)
 
 
 def test_a_value_a_cycle_has_a_mean_and_its_figure_alone() -> None:

@@ -60,6 +60,19 @@ def test_a_recording_without_steps_is_one_run_by_its_best_level() -> None:
     assert long["run"] == "x" * 120
 
 
+def test_a_coefficient_gives_runs_and_an_entry_without_a_load() -> None:
+    steps = [
+        {"voltage_peak_to_peak": 0.0, "friction_coefficient": 0.3, "friction_reduction": None},
+        {"voltage_peak_to_peak": 20.0, "friction_coefficient": 0.12, "friction_reduction": 0.6},
+    ]
+    result = {"title": "a.csv", "values": {}, "tables": {"steps": {"rows": steps}}}
+    (row,) = result_run_rows(result, {})
+    assert (row["friction_coefficient"], row["voltage_peak_to_peak"]) == (0.12, 20.0)
+    assert row["intrinsic_friction_coefficient"] == approx(0.3)
+    assert "friction_force" not in row
+    assert result_rig_entries(result, {}) == {"friction.friction_coefficient": "0.3"}
+
+
 def test_a_rig_takes_measured_quantities_with_their_units_and_the_coefficient() -> None:
     result = of(vibration_amplitude=2.5e-6, amplitude_per_volt=8.92e-8, mean_force=0.6, frequency=-1.0)
     entries = result_rig_entries(result, {"normal_load": 3.0, "frequency": 22000.0})

@@ -149,7 +149,10 @@ def test_a_row_has_what_was_set_and_the_friction_of_each_level(tmp_path: Path) -
     assert head[:6] == [
         *("run", "block", "normal_load [N]", "sliding_speed [m/s]", "voltage_peak_to_peak [V]", "frequency [Hz]")
     ]
-    assert head[10:] == ["nominal_area [m2]", "study", "source", "note", "vibration_direction [rad]"]
+    assert head[10:] == [
+        *("nominal_area [m2]", "study", "source", "note", "vibration_direction [rad]"),
+        *("friction_coefficient", "friction_coefficient_uncertainty"),
+    ]
     told = [dict(zip(head, row, strict=True)) for row in rows]
     assert {(row["run"], row["block"], row["nominal_area [m2]"], row["study"], row["source"]) for row in told} == {
         (folder.name, "2", "1.5e-06", "Levels", str(folder))
@@ -180,7 +183,7 @@ def test_what_is_lubricated_or_has_no_friction_is_left_out_with_a_line(tmp_path:
     assert len(rows) == 1
     assert left_out == [
         f"{oiled.name}: part 1 of the recording left out: lubricated, and models of friction are of dry contacts",
-        f"{warm.name}: part 1 is left out: it has no channel friction_force, nor friction_coefficient with a load",
+        f"{warm.name}: part 1 is left out: it has no channel friction_force, nor friction_coefficient",
         f"none: left out: {tmp_path / 'none'}: holds no run: it has no file run.json",
     ]
 
@@ -241,6 +244,19 @@ def test_a_coefficient_of_friction_counts_by_the_load_of_the_facts(tmp_path: Pat
     (_, row), left_out = level_rows([folder])
     assert left_out == []
     assert float(row[6]) == approx(1.2)
+
+
+def test_a_coefficient_of_friction_without_a_load_counts_as_it_is(tmp_path: Path) -> None:
+    voltage = np.repeat([0.0, 20.0], 250)
+    recording(tmp_path / "b.csv", friction_coefficient=np.repeat([0.4, 0.1], 250), voltage_peak_to_peak=voltage)
+    folder = take_in(tmp_path / "runs", tmp_path / "b.csv", facts={"sliding_speed": 0.02, "frequency": 20e3})
+    (head, *rows), left_out = level_rows([folder])
+    assert left_out == []
+    found = [dict(zip(head, row, strict=True)) for row in rows]
+    assert [float(row["friction_coefficient"]) for row in found] == approx([0.4, 0.1], abs=1e-6)
+    assert {row["friction_force [N]"] for row in found} == {""}
+    runs = catalogued_runs(f"catalogue:in={tmp_path / 'runs'}")
+    assert 1 - runs["friction_reduction"].to_numpy() == approx([0.25], abs=1e-3)
 
 
 def test_of_a_folder_the_recordings_alone_are_taken_in_by_name(tmp_path: Path) -> None:

@@ -116,6 +116,7 @@ _HEADER: Final = (
     *("run", "block", "normal_load [N]", "sliding_speed [m/s]", "voltage_peak_to_peak [V]", "frequency [Hz]"),
     *("friction_force [N]", "friction_force_uncertainty [N]", "friction_reduction", "friction_reduction_uncertainty"),
     *("nominal_area [m2]", "study", "source", "note", "vibration_direction [rad]"),
+    *("friction_coefficient", "friction_coefficient_uncertainty"),
 )
 
 
@@ -215,9 +216,13 @@ def _rows(entry: CatalogueEntry, left_out: list[str]) -> list[list[str]]:
     rows = []
     lubricated = list[str]()
     for part in range(1, len(run.recordings) + 1):
-        for level in _levels(run, part, left_out, lubricated):
+        recording, has_load = _with_force(run.dataset(part), run)
+        for level in _levels(run, part, recording, left_out, lubricated):
             setting = (level.load, level.speed, level.voltage, level.frequency if level.voltage else None)
-            rows.append([entry.summary.folder.name, str(block), *map(_cell, (*setting, *level.friction)), *told])
+            unknown, both = (None, None), level.friction[:2]
+            force, coefficient = (both, unknown) if has_load else (unknown, both)
+            numbers = map(_cell, (*setting, *force, *level.friction[2:]))
+            rows.append([entry.summary.folder.name, str(block), *numbers, *told, *map(_cell, coefficient)])
     if lubricated:
         parts = "part " if len(lubricated) == 1 else "parts "
         left_out.append(
@@ -227,9 +232,10 @@ def _rows(entry: CatalogueEntry, left_out: list[str]) -> list[list[str]]:
     return rows
 
 
-def _levels(run: Run, part: int, left_out: list[str], lubricated: list[str]) -> Iterator[_Level]:
+def _levels(
+    run: Run, part: int, recording: "xr.Dataset", left_out: list[str], lubricated: list[str]
+) -> Iterator[_Level]:
     """Friction at each dry setting of a part of a recording; of a part without friction a line, a lubricated one."""
-    recording = _with_force(run.dataset(part), run)
     conditions = set_conditions(recording)
     if not conditions:
         entry = catalogue_entry(run.folder)
@@ -240,7 +246,6 @@ def _levels(run: Run, part: int, left_out: list[str], lubricated: list[str]) -> 
     if "friction_force" not in recording:
         left_out.append(
             f"{run.folder.name}: part {part} is left out: it has no channel friction_force, nor friction_coefficient"
-            " with a load"
         )
         return
     if any(stretch.slides and stretch.lubricant for stretch in conditions):
@@ -250,15 +255,18 @@ def _levels(run: Run, part: int, left_out: list[str], lubricated: list[str]) -> 
             yield from _levels_of_stretch(run, recording, stretch)
 
 
-def _with_force(recording: "xr.Dataset", run: Run) -> "xr.Dataset":
-    """Recording with the friction force, from its coefficient and load where it has only these."""
+def _with_force(recording: "xr.Dataset", run: Run) -> tuple["xr.Dataset", bool]:
+    """Recording with the friction force, and whether it is one.
+
+    Of a recording that has the coefficient alone it is that under its load; under 1 N, and so the coefficient, where
+    the load is not known.
+    """
     if "friction_force" in recording or "friction_coefficient" not in recording:
-        return recording
+        return recording, True
     load = recording["normal_load"] if "normal_load" in recording else catalogue_entry(run.folder).normal_load
-    if load is None:
-        return recording
-    force = recording["friction_coefficient"] * load
-    return recording.assign(friction_force=force.assign_attrs(units="N", long_name="Friction force"))
+    force = recording["friction_coefficient"] * (1.0 if load is None else load)
+    force = force.assign_attrs(units="N", long_name="Friction force")
+    return recording.assign(friction_force=force), load is not None
 
 
 def _levels_of_stretch(run: Run, recording: "xr.Dataset", stretch: SetConditions) -> Iterator[_Level]:

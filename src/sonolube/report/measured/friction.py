@@ -14,6 +14,7 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.friction.loops import friction_work
 from sonolube.measurement.friction.rotation import MotorCalibration
 from sonolube.measurement.friction.sliding import NOISE_VOLTAGE, Mask, stretches
+from sonolube.measurement.friction.stated_load import StatedLoad
 from sonolube.measurement.friction.stated_parts import STATED_STEP, StatedParts, with_stated_parts
 from sonolube.measurement.friction.windows import (
     DEFAULT_WINDOW_DURATION,
@@ -47,6 +48,11 @@ if TYPE_CHECKING:
 
 _LARGE = 1 << 29  # bytes of a TDMS file beyond which it is read in blocks, for its windows only
 _CHANNELS = ("friction_force", "friction_coefficient")
+_COEFFICIENTS = {
+    "friction_force": ("friction_coefficient", "Coefficient of friction"),
+    "steady_friction_force": ("steady_friction_coefficient", "Steady coefficient of friction"),
+    "mean_force": ("mean_coefficient", "Mean coefficient of the whole recording"),
+}  # and their labels, by the levels of a force
 _ONE_VOLTAGE = 0.1  # of the highest voltage, up to which its range is no change of the vibration
 _LONG_REST = 0.5  # s, from which a rest is named
 _MAX_LISTED = 3
@@ -70,6 +76,8 @@ class FrictionSettings:
         To tell friction by the motor's current.
     parts : StatedParts
         Part, rests and steps as stated, in place of those found.
+    load : StatedLoad or None
+        Load, for the coefficient of a force, or the force of a coefficient, with its uncertainty and that of the zero.
 
     Raises
     ------
@@ -83,6 +91,7 @@ class FrictionSettings:
     rotation_speed: float | None = None
     motor: MotorCalibration | None = None
     parts: StatedParts = field(default_factory=StatedParts)
+    load: StatedLoad | None = None
 
     def __post_init__(self) -> None:
         speeds = {"sliding_speed": self.sliding_speed, "rotation_speed": self.rotation_speed}
@@ -100,8 +109,13 @@ def friction_sheet(path: Path, *, settings: FrictionSettings) -> sheet.Sheet:
 
 def recording_sheet(recording: "xr.Dataset", *, title: str, settings: FrictionSettings) -> sheet.Sheet:
     """Friction in a recording that was read, as `friction_sheet`."""
-    motor, recording = settings.motor, with_stated_parts(recording, settings.parts)
-    sections = _sections(recording, settings) if motor is None else [_motor(recording, settings, motor)]
+    motor, name = settings.motor, "friction_force"
+    if motor is None:
+        recording, name = _with_force(recording, settings.load)
+    recording = with_stated_parts(recording, settings.parts)
+    sections = _sections(recording, name, settings) if motor is None else [_motor(recording, settings, motor)]
+    if settings.load is not None:
+        sections.append(_coefficients(sections, settings.load))
     sections.append(sheet.Sheet(caveats=recording_caveats(recording)))
     return sheet.joined(sections, title=title, source=recording_source(recording))
 
@@ -134,27 +148,53 @@ def recording_source(recording: "xr.Dataset") -> dict[str, str]:
     }
 
 
-def _sections(recording: "xr.Dataset", settings: FrictionSettings) -> list[sheet.Sheet]:
-    """Sections of a recording of friction, as far as its channels allow."""
+def _with_force(recording: "xr.Dataset", load: StatedLoad | None) -> tuple["xr.Dataset", str]:
+    """Recording with a force, and the name of the channel of friction that is reported.
+
+    The force of a recording that has the coefficient alone is that under the load; without a load that under 1 N, by
+    which the same analyses tell the coefficient.
+    """
     name = friction_channel(recording)
+    if name == "friction_force":
+        return recording, name
+    force = recording[name] * (1.0 if load is None else load.normal_load)
+    attributes = {"units": "N", "long_name": quantities()["friction_force"].meaning}
+    whole = recording.assign(friction_force=force.assign_attrs(attributes))
+    return whole, name if load is None else "friction_force"
+
+
+def _coefficients(sections: Sequence[sheet.Sheet], load: StatedLoad) -> sheet.Sheet:
+    """Coefficients of the levels of a force, with the uncertainties of load and zero."""
+    values = []
+    for level in (value for section in sections for value in section.values if value.name in _COEFFICIENTS):
+        coefficient, error = load.coefficient(level.value, uncertainty=level.uncertainty)
+        values.append(sheet.Value(*_COEFFICIENTS[level.name], coefficient, "", uncertainty=error))
+    return sheet.Sheet(values=tuple(values))
+
+
+def _sections(recording: "xr.Dataset", name: str, settings: FrictionSettings) -> list[sheet.Sheet]:
+    """Sections of a recording of friction, as far as its channels allow; of a coefficient without those of a force."""
     if "time" not in recording.variables:
         return [_mean_of_all(recording, name), sheet.Sheet(figures=(_cycle_figure(recording, name),))]
-    if name != "friction_force":
-        windows = analyse_windows(recording, of=name, window_duration=settings.window_duration)
-        return [_mean_of_all(recording, name), _windows(recording, windows, None)]
     whole, rest = recording, recorded_rest(recording)
     left_out = rest | (whole[STATED_STEP].to_numpy() == 0) if STATED_STEP in whole else rest
-    recording = whole.assign(friction_force=whole["friction_force"].where(~left_out)) if left_out.any() else whole
+    if left_out.any():
+        recording = whole.assign({each: whole[each].where(~left_out) for each in {name, "friction_force"}})
     windows = analyse_windows(recording, of=name, window_duration=settings.window_duration)
-    sections = [_level(whole, recording), *_rest_caveat(whole, rest)]
+    sections = [_level(whole, recording, name), *_rest_caveat(whole, rest)]
     steady = None
     if settings.sliding_speed is not None:
         sections.append(
-            sheet.attempted(partial(_running_in, recording, settings, settings.sliding_speed), what="steady state")
+            sheet.attempted(
+                partial(_running_in, recording, name, settings, settings.sliding_speed), what="steady state"
+            )
         )
         steady = _steady_state_or_none(windows, settings.sliding_speed)
     sections.append(_windows(recording, windows, steady))
-    sections += _steps_or_stick_slip(whole, recording, settings.rotation_speed)
+    sections += _steps_or_stick_slip(whole, recording, name, settings)
+    if name != "friction_force":
+        needs = "stick-slip, work and wobble: are of a force; give the load with the coefficient"
+        return [*sections, sheet.Sheet(not_found=(needs,))]
     if "relative_velocity" in recording.variables:
         sections.append(sheet.attempted(partial(_cycles, whole), what="work of friction"))
     if settings.rotation_speed is not None:
@@ -162,16 +202,16 @@ def _sections(recording: "xr.Dataset", settings: FrictionSettings) -> list[sheet
     return sections
 
 
-def _level(whole: "xr.Dataset", sliding: "xr.Dataset") -> sheet.Sheet:
-    """Mean friction force while sliding, where the vibration does not change; else the mean of the whole recording."""
+def _level(whole: "xr.Dataset", sliding: "xr.Dataset", name: str) -> sheet.Sheet:
+    """Mean friction while sliding, where the vibration does not change; else the mean of the whole recording."""
     voltage, speed = recorded_voltage(whole), recorded_speed(whole)
     if voltage is None:
-        return _mean_of_all(whole, "friction_force")
+        return _mean_of_all(whole, name)
     low, high = np.nanmin(voltage), np.nanmax(voltage)
     is_one = high - low <= max(_ONE_VOLTAGE * high, NOISE_VOLTAGE)
     if not is_one or (speed is None and high > NOISE_VOLTAGE):
-        return _mean_of_all(whole, "friction_force")
-    return _mean_sheet(sliding, "friction_force", "friction_force", quantities()["friction_force"].meaning)
+        return _mean_of_all(whole, name)
+    return _mean_sheet(sliding, name, name, quantities()[name].meaning)
 
 
 def _mean_of_all(recording: "xr.Dataset", name: str) -> sheet.Sheet:
@@ -241,34 +281,41 @@ def _steady_state_or_none(windows: WindowStatistics, sliding_speed: float) -> St
         return None
 
 
-def _running_in(recording: "xr.Dataset", settings: FrictionSettings, sliding_speed: float) -> sheet.Sheet:
+def _running_in(recording: "xr.Dataset", name: str, settings: FrictionSettings, sliding_speed: float) -> sheet.Sheet:
     """Steady friction after running-in, and the sliding distance to it."""
     running_in = analyse_running_in(recording, sliding_speed=sliding_speed, window_duration=settings.window_duration)
-    return _steady_part(running_in.friction, running_in.fluctuation)
+    return _steady_part(running_in.friction, running_in.fluctuation, name)
 
 
-def _steady_part(friction: SteadyStateOnset, fluctuation: SteadyStateOnset) -> sheet.Sheet:
+def _steady_part(
+    friction: SteadyStateOnset, fluctuation: SteadyStateOnset, name: str = "friction_force"
+) -> sheet.Sheet:
     """Steady friction with time and distance to it, and the distance to a steady fluctuation."""
     if not friction.steady:
         return sheet.Sheet(not_found=(f"steady friction: {friction.reason}",))
     level, error = friction.friction_force, friction.friction_force_uncertainty
+    label, unit = ("friction force", "N") if name == "friction_force" else ("coefficient of friction", "")
     values = (
-        sheet.Value("steady_friction_force", "Steady friction force", level, "N", uncertainty=error),
+        sheet.Value(f"steady_{name}", f"Steady {label}", level, unit, uncertainty=error),
         sheet.Value("steady_time", "Time to the steady state", friction.start_time, "s"),
         sheet.Value("steady_distance", "Sliding distance to the steady state", friction.sliding_distance, "m"),
     )
     if not fluctuation.steady:
         return sheet.Sheet(values=values, not_found=(f"steady fluctuation: {fluctuation.reason}",))
-    name, label = "steady_fluctuation_distance", "Sliding distance to a steady fluctuation"
-    return sheet.Sheet(values=(*values, sheet.Value(name, label, fluctuation.sliding_distance, "m")))
+    label = "Sliding distance to a steady fluctuation"
+    distance = sheet.Value("steady_fluctuation_distance", label, fluctuation.sliding_distance, "m")
+    return sheet.Sheet(values=(*values, distance))
 
 
-def _steps_or_stick_slip(whole: "xr.Dataset", sliding: "xr.Dataset", rotation_speed: float | None) -> list[sheet.Sheet]:
-    """Friction and stick-slip at the steps of a voltage; stick-slip of all that slides where there are none."""
-    steps = sheet.Sheet()
+def _steps_or_stick_slip(
+    whole: "xr.Dataset", sliding: "xr.Dataset", name: str, settings: FrictionSettings
+) -> list[sheet.Sheet]:
+    """Friction and stick-slip at the steps of a voltage; stick-slip of a force that slides where there are none."""
+    steps, rotation_speed = sheet.Sheet(), settings.rotation_speed
     if {"voltage_peak_to_peak", "stack_voltage"} & set(map(str, whole.variables)):
-        steps = sheet.attempted(partial(step_sheet, whole, rotation_speed=rotation_speed), what="steps of the voltage")
-    if steps.tables:
+        analysis = partial(step_sheet, whole, rotation_speed=rotation_speed, channel=name, load=settings.load)
+        steps = sheet.attempted(analysis, what="steps of the voltage")
+    if steps.tables or name != "friction_force":
         return [steps]
     return [steps, sheet.attempted(partial(_stick_slip, sliding, rotation_speed), what="stick-slip")]
 

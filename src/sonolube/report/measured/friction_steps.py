@@ -9,6 +9,7 @@ import numpy as np
 from sonolube.charts import Axis, Band, Chart, Line, Panel, Part, Points, Rule, Zone, envelope, one_panel
 from sonolube.checks import Floats
 from sonolube.measurement.friction.rotation import MotorFrictionTrace
+from sonolube.measurement.friction.stated_load import StatedLoad
 from sonolube.measurement.friction.voltage_steps import VoltageStep
 from sonolube.measurement.friction.windows import SteadyStateOnset, WindowStatistics
 from sonolube.measurement.friction_analysis import analyse_rotation_speed, analyse_voltage_steps, channel_values
@@ -17,7 +18,7 @@ from sonolube.measurement.statistics.repeated_tests import compare_means, ratio_
 from sonolube.report.measured import sheet
 from sonolube.report.measured.sheet import captioned
 from sonolube.text.units import format_si
-from sonolube.vocabulary import quantities
+from sonolube.vocabulary import quantities, unit_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -60,7 +61,7 @@ def by_cycle_figure(cycles: Floats, signal: Floats, name: str) -> Chart:
     "Friction over voltage",
     "Mean and its standard error at each step, and the reduction of the friction without voltage.",
 )
-def voltage_steps_figure(steps: Sequence[VoltageStep]) -> Chart:
+def voltage_steps_figure(steps: Sequence[VoltageStep], channel: str = "friction_force") -> Chart:
     """Friction and its reduction over the voltage."""
     driven = [step for step in steps if step.friction_reduction is not None]
     force = Points(
@@ -77,7 +78,7 @@ def voltage_steps_figure(steps: Sequence[VoltageStep]) -> Chart:
         colour=1,
         marker=1,
     )
-    axes = (("Friction force", "N", force), ("Friction reduction", "%", reduction))
+    axes = ((_AXES[channel].label, _AXES[channel].unit, force), ("Friction reduction", "%", reduction))
     panels = [
         Panel(
             x=Axis("Voltage, peak to peak", "V", lowest=0.0),
@@ -211,22 +212,31 @@ _BURST_COLUMNS = (
 )
 
 
-def step_sheet(recording: "xr.Dataset", *, rotation_speed: float | None) -> sheet.Sheet:
-    """Friction, its reduction and stick-slip at each step of the voltage of a recording."""
+def step_sheet(
+    recording: "xr.Dataset",
+    *,
+    rotation_speed: float | None,
+    channel: str = "friction_force",
+    load: StatedLoad | None = None,
+) -> sheet.Sheet:
+    """Friction, its reduction and stick-slip at each step of the voltage of a recording.
+
+    With the coefficient, where the load is stated; of a coefficient as `channel`, which stands in place of the force,
+    without stick-slip.
+    """
     found = analyse_rotation_speed(recording) if rotation_speed is None else None
     speed = found if rotation_speed is None else rotation_speed
     steps = analyse_voltage_steps(recording, rotation_speed=speed)
     has_speed = speed_channel(recording) in _SPEEDS and speed_changes(recording)
-    labels = {name: label for name, label in _STEP_LABELS.items() if has_speed or name != "sliding_speed"}
-    table = sheet.Table(
-        name="steps",
-        title="Friction at each step of the voltage",
-        columns=sheet.quantity_columns(labels),
-        rows=tuple(tuple(getattr(step, name) for name in labels) for step in steps),
-    )
+    table = _step_table(steps, channel, load, has_speed=has_speed)
     rotation: tuple[sheet.Value, ...] = ()
     if found is not None:
         rotation = (sheet.quantity_value("rotation_speed", found, label="Rotational speed, found by the wobble"),)
+    caveats = () if speed is not None else (_unknown_rotation(steps),)
+    if channel != "friction_force":
+        zero = _zero_taken_off(steps[0], "")
+        figure = voltage_steps_figure(steps, channel)
+        return sheet.Sheet(values=rotation, tables=(table,), figures=(figure,), caveats=(*zero, *caveats))
     force = channel_values(recording, "time"), channel_values(recording, "friction_force")
     sticking = [step for step in steps if step.stick_slip.detected]
     values = (*rotation, sheet.Value("stick_slip_steps", "Steps with stick-slip", float(len(sticking)), ""))
@@ -241,16 +251,35 @@ def step_sheet(recording: "xr.Dataset", *, rotation_speed: float | None) -> shee
         values=values,
         tables=tuple(tables),
         figures=tuple(pictures),
-        caveats=(*_zero_taken_off(steps[0]), *(() if speed is not None else (_unknown_rotation(steps),))),
+        caveats=(*_zero_taken_off(steps[0], "N"), *caveats),
         not_found=() if sticking else (reason,),
     )
 
 
-def _zero_taken_off(step: VoltageStep) -> tuple[str, ...]:
-    """Caveat that the force at rest was taken for its zero."""
+def _step_table(steps: Sequence[VoltageStep], channel: str, load: StatedLoad | None, *, has_speed: bool) -> sheet.Table:
+    """Friction and its reduction at each step, with the coefficient where the load is stated."""
+    labels = {name: label for name, label in _STEP_LABELS.items() if has_speed or name != "sliding_speed"}
+    columns = {name: [getattr(step, name) for step in steps] for name in labels}
+    if load is not None:
+        both = [load.coefficient(step.friction_force, uncertainty=step.friction_force_uncertainty) for step in steps]
+        labels |= {"friction_coefficient": "Coefficient", "friction_coefficient_uncertainty": "Uncertainty"}
+        columns["friction_coefficient"] = [coefficient for coefficient, _ in both]
+        columns["friction_coefficient_uncertainty"] = [error for _, error in both]
+        columns["friction_reduction_uncertainty"] = [load.reduction_uncertainty(step) for step in steps]
+    named = {name: name.replace("friction_force", channel) for name in labels}
+    return sheet.Table(
+        name="steps",
+        title="Friction at each step of the voltage",
+        columns=tuple(sheet.Column(named[name], label, unit_of(named[name])) for name, label in labels.items()),
+        rows=tuple(zip(*(columns[name] for name in labels), strict=True)),
+    )
+
+
+def _zero_taken_off(step: VoltageStep, unit: str) -> tuple[str, ...]:
+    """Caveat that the friction at rest was taken for its zero."""
     if not step.force_zero:
         return ()
-    return (f"{format_si(step.force_zero, 'N')}, the mean force at rest before sliding, is taken off as its zero",)
+    return (f"{format_si(step.force_zero, unit)}, the mean force at rest before sliding, is taken off as its zero",)
 
 
 def _unknown_rotation(steps: Sequence[VoltageStep]) -> str:
@@ -288,7 +317,10 @@ def _bursts(steps: Sequence[VoltageStep]) -> sheet.Table:
     return sheet.Table(name="stick_slip_bursts", title="Bursts of stick-slip", columns=_BURST_COLUMNS, rows=rows)
 
 
-_LEVELS = ("steady_friction_force", "friction_force", "mean_force", "mean_coefficient")
+_LEVELS = (
+    *("steady_friction_force", "friction_force", "mean_force"),
+    *("steady_friction_coefficient", "friction_coefficient", "mean_coefficient"),
+)
 
 
 def comparison_sheet(with_vibration: Sequence[sheet.Sheet], without_vibration: Sequence[sheet.Sheet]) -> sheet.Sheet:

@@ -10,7 +10,10 @@ from typing import Any, Final
 
 from sonolube.text.units import format_quantity
 
-_LEVELS: Final = ("steady_friction_force", "friction_force", "mean_force")
+_LEVELS: Final = {
+    "friction_force": ("steady_friction_force", "friction_force", "mean_force"),
+    "friction_coefficient": ("steady_friction_coefficient", "friction_coefficient", "mean_coefficient"),
+}
 _KEYS: Final = {
     "voltage_peak_to_peak": "drive.voltage_peak_to_peak",
     "vibration_amplitude": "vibration.vibration_amplitude",
@@ -46,9 +49,9 @@ def _value(result: Mapping[str, Any], name: str) -> float | None:
     return _finite(entry.get("value")) if isinstance(entry, Mapping) else None
 
 
-def _level(result: Mapping[str, Any]) -> float | None:
-    """Level of the friction of a whole recording. [N]"""
-    return next((found for name in _LEVELS if (found := _value(result, name)) is not None), None)
+def _level(result: Mapping[str, Any], kind: str) -> float | None:
+    """Level of the friction of a whole recording, of its force or of its coefficient."""
+    return next((found for name in _LEVELS[kind] if (found := _value(result, name)) is not None), None)
 
 
 def _finite(value: Any) -> float | None:
@@ -71,18 +74,20 @@ def result_run_rows(result: Mapping[str, Any], conditions: Mapping[str, float]) 
     title = str(result.get("title", ""))[:120]
     steps = _steps(result)
     for number, step in enumerate(steps, start=1):
-        force, reduction = step.get("friction_force"), step.get("friction_reduction")
-        if force is None or reduction is None or reduction >= 1:
+        kind = next((each for each in _LEVELS if step.get(each) is not None), "friction_force")
+        friction, reduction = step.get(kind), step.get("friction_reduction")
+        if friction is None or reduction is None or reduction >= 1:
             continue
         row: dict[str, float | str] = {"run": f"{title} step {number}"} | {**conditions}
-        row["friction_force"], row["intrinsic_friction_force"] = force, force / (1 - reduction)
+        row[kind], row[f"intrinsic_{kind}"] = friction, friction / (1 - reduction)
         for name in ("voltage_peak_to_peak", "sliding_speed"):
             if (own := step.get(name)) is not None:
                 row[name] = own
         yield row
-    force = _level(result)
-    if not steps and force is not None:
-        yield {"run": title} | {**conditions, "friction_force": force}
+    levels = {kind: level for kind in _LEVELS if (level := _level(result, kind)) is not None}
+    if not steps and levels:
+        kind = next(iter(levels))
+        yield {"run": title} | {**conditions, kind: levels[kind]}
 
 
 def result_rig_entries(result: Mapping[str, Any], conditions: Mapping[str, float]) -> dict[str, str]:
@@ -99,12 +104,11 @@ def result_rig_entries(result: Mapping[str, Any], conditions: Mapping[str, float
 
 def _coefficient(result: Mapping[str, Any], conditions: Mapping[str, float]) -> float | None:
     """Coefficient of dry friction: as measured, or by the force without vibration and the load."""
-    value, load, steps = _value(result, "mean_coefficient"), conditions.get("normal_load"), _steps(result)
-    if value is not None or not load:
-        return value
-    if steps:
-        force = next((step for step in steps if step.get("voltage_peak_to_peak") == 0), {}).get("friction_force")
-    else:
-        vibrates = any(conditions.get(name) for name in ("voltage_peak_to_peak", "vibration_amplitude"))
-        force = None if vibrates else _level(result)
-    return None if force is None else force / load
+    load, steps = conditions.get("normal_load"), _steps(result)
+    still: Mapping[str, float | None] = next((step for step in steps if step.get("voltage_peak_to_peak") == 0), {})
+    vibrates = any(conditions.get(name) for name in ("voltage_peak_to_peak", "vibration_amplitude"))
+    for kind, newton in (("friction_coefficient", 1.0), ("friction_force", load)):
+        level = still.get(kind) if steps else None if vibrates else _level(result, kind)
+        if level is not None and newton:
+            return level / newton
+    return None

@@ -6,6 +6,7 @@ from typing import Annotated, Unpack
 
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.measurement.friction.rotation import MotorCalibration
+from sonolube.measurement.friction.stated_load import StatedLoad
 from sonolube.measurement.friction.stated_parts import Span, StatedParts
 from sonolube.report.measured.friction import FrictionSettings, friction_sheet, joined_friction_sheet
 from sonolube.report.measured.friction_steps import comparison_sheet
@@ -52,6 +53,16 @@ def friction(
     join: Annotated[bool, Parameter("The files are one test, in this order: measure it too.")] = False,
     without_vibration: Annotated[Sequence[InputFile], File("A test without vibration; may come again.", "FILE")] = (),
     sliding_speed: Annotated[Number | None, Quantity("For the distance to the steady state.", "sliding_speed")] = None,
+    load: Annotated[
+        Number | None, Quantity("Normal load, for the coefficient, or the force of a coefficient.", "normal_load")
+    ] = None,
+    load_uncertainty: Annotated[
+        Number | None, Quantity("Of the load, standard; enters the coefficient.", "normal_load_uncertainty")
+    ] = None,
+    zero_uncertainty: Annotated[
+        Number | None,
+        Quantity("Of the zero of the force, standard; enters coefficient and reduction.", "force_zero_uncertainty"),
+    ] = None,
     window: Annotated[Number, Quantity("Duration of the windows.", "s")] = "2s",
     rotation_speed: Annotated[
         Number | None,
@@ -99,6 +110,7 @@ def friction(
         rotation_speed=in_si("rotation_speed", rotation_speed),
         motor=_motor(torque_constant, idle_current, groove_diameter),
         parts=_stated_parts(part, rest, step),
+        load=_stated_load(load, load_uncertainty, zero_uncertainty),
     )
     measure = partial(friction_sheet, settings=settings)
     sheets, refused = each_file(files, measure, title="measuring")
@@ -130,6 +142,21 @@ def _stated_parts(part: str | None, rest: Sequence[str], step: Mapping[str, str]
     rests = [_span(text, "rest") for text in ([rest] if isinstance(rest, str) else rest)]
     return StatedParts(
         part=None if part is None else _span(part, "part"), rests=tuple(rests), steps=tuple(sorted(steps))
+    )
+
+
+def _stated_load(
+    load: Number | None, load_uncertainty: Number | None, zero_uncertainty: Number | None
+) -> StatedLoad | None:
+    """Load with the uncertainties that enter a coefficient."""
+    newton = in_si("load", load)
+    if newton is None:
+        refuse_unused("load_uncertainty", "zero_uncertainty", because=f"without {shown('load')}, for the coefficient")
+        return None
+    return StatedLoad(
+        normal_load=newton,
+        normal_load_uncertainty=in_si("load_uncertainty", load_uncertainty) or 0.0,
+        force_zero_uncertainty=in_si("zero_uncertainty", zero_uncertainty) or 0.0,
     )
 
 
