@@ -95,9 +95,9 @@ def is_summary(cell: str) -> bool:
 
 
 def rows_and_others(
-    rows: Iterable[NumberedCells], width: int, heading_rows: Sequence[Sequence[str]], path: Path
+    rows: Iterable[NumberedCells], columns: int, heading_rows: Sequence[Sequence[str]], path: Path
 ) -> tuple[list[NumberedCells], list[NoRow]]:
-    """Rows of a table of a width, and the lines between them that are none: headings again, summaries, and remarks.
+    """Rows of a table, and the lines between them that are none: headings again, summaries, and remarks.
 
     Blank lines and rules are passed over. A line with one cell of text is a remark where the table has three columns.
     """
@@ -106,7 +106,7 @@ def rows_and_others(
     heads = [_trimmed(each) for each in heading_rows]
     for row in rows:
         line, cells = row
-        if len(cells) == width and cells[0][:1].isdigit() and not any(cell[:1].isalpha() for cell in cells):
+        if len(cells) == columns and cells[0][:1].isdigit() and not any(cell[:1].isalpha() for cell in cells):
             body.append(row)  # as nearly all of a long table
             continue
         stripped = _trimmed(cells)
@@ -117,10 +117,10 @@ def rows_and_others(
             others.append(NoRow(line, "heading"))
         elif summary := next(filter(is_summary, filled), ""):
             others.append(NoRow(line, "summary", summary))
-        elif len(filled) == 1 and width >= _REMARK_COLUMNS and not is_value(filled[0]):
+        elif len(filled) == 1 and columns >= _REMARK_COLUMNS and not is_value(filled[0]):
             others.append(NoRow(line, "remark", filled[0]))
-        elif len(stripped) > width:
-            raise InvalidInput(f"{path}: line {line}: has {len(stripped)} cells where {width} columns are named")
+        elif len(stripped) > columns:
+            raise InvalidInput(f"{path}: line {line}: has {len(stripped)} cells where {columns} columns are named")
         else:
             body.append(row)
     return body, others
