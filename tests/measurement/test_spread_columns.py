@@ -5,9 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pytest import approx
+from pytest import approx, raises
 
 import sonolube
+from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_runs import read_runs, run_caveats
 from sonolube.measurement.run_headings import run_heading, spread_headings
 
@@ -77,6 +78,11 @@ def test_a_spread_of_a_column_that_is_not_clear_is_left_out_and_said(
 def test_hours_are_no_standard_deviations() -> None:
     labels = ["Zeit [Std]", "Load [N]", "SD"]
     assert set(spread_headings(labels, [run_heading(label) for label in labels])) == {2}
+
+
+def test_a_standard_lubricant_is_no_spread_and_is_asked_for(tmp_path: Path) -> None:
+    with raises(InvalidInput, match="it looks like a lubricant"):
+        read_runs(written(tmp_path, "COF on", "COF off", "Std. oil type", cells="0.344;0.420;PAO 4"))
 
 
 def test_the_command_mapping_shows_spreads_and_writes_them(tmp_path: Path) -> None:

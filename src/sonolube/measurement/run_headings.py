@@ -138,9 +138,15 @@ def uncertainty_of(name: str) -> str:
 
 
 def is_spread(label: str) -> bool:
-    """Whether a heading is that of a standard deviation or uncertainty, but for a name of the vocabulary."""
-    own = _OWN.fullmatch(" ".join(label.split()))
-    return len(label) <= _LONGEST and _SPREAD.search(label) is not None and not (own and own[1] in quantities())
+    """Whether a heading is that of a standard deviation or uncertainty.
+
+    Names of the vocabulary are none, nor is what may be a lubricant or a direction, such as "Std. oil".
+    """
+    if len(label) > _LONGEST or not _SPREAD.search(label):
+        return False
+    own, plain = _OWN.fullmatch(" ".join(label.split())), _plain(label)
+    is_known = own is not None and own[1] in quantities()
+    return not (is_known or _LUBRICANT.search(plain) or _DIRECTION.search(plain))
 
 
 def _without_spread(text: str) -> str:
