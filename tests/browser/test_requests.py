@@ -359,7 +359,12 @@ def test_pages_and_answers_have_their_routes(bench: Any) -> None:
     client = bench.client
     page = client.get("/")
     assert (page.status_code, page.headers["cache-control"]) == (200, "no-cache")
-    assert client.get("/api/start").json() == {"rig": "own", "version": __version__, "is_running": False}
+    assert client.get("/api/start").json() == {
+        "rig": "own",
+        "is_folder": False,
+        "version": __version__,
+        "is_running": False,
+    }
     assert client.get("/api/description").json() == {"kind": "description", "payload": {}, "waits": True}
     asked = client.post("/api/tasks/measure/friction", {"a": 1})
     assert asked.headers["cache-control"] == "no-store"

@@ -11,7 +11,8 @@ from sonolube.extras import missing_package
 _LOOPBACK = ("127.0.0.1", "localhost", "::1")
 
 Rig = Annotated[
-    Path | None, typer.Argument(metavar="[RIG.toml]", help="The rig that the first page shows, as a TOML file.")
+    Path | None,
+    typer.Argument(metavar="[RIG.toml]", help="The rig that the first page shows, as a TOML file or its folder."),
 ]
 Port = Annotated[int, typer.Option(min=0, max=65535, help="Port on which it listens; 0 for any free one.")]
 Browser = Annotated[bool, typer.Option(help="Open the browser.")]
@@ -28,7 +29,12 @@ DeviceMap = Annotated[
     Path | None,
     typer.Option(metavar="MAP.toml", help="Devices of the rig that page Lab runs; without it a virtual tribometer."),
 ]
-Runs = Annotated[Path, typer.Option(metavar="DIR", help="Folder of the runs of page Lab.")]
+Runs = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="DIR", help="Folder of the runs of page Lab; by default runs, or records of the rig's folder."
+    ),
+]
 
 
 def app(
@@ -39,7 +45,7 @@ def app(
     token_file: TokenFile = None,
     allow_host: Allowed = None,
     lab: DeviceMap = None,
-    runs: Runs = Path("runs"),
+    runs: Runs = None,
 ) -> None:
     """Open the workbench in the browser.
 

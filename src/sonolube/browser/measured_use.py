@@ -21,7 +21,9 @@ from sonolube.measurement.run_sheet import (
     with_switch,
     without_row,
 )
+from sonolube.measurement.run_sheet_file import SheetFile, store_sheet, stored_sheet
 from sonolube.report.measured.further_use import result_numbers, result_rig_entries, result_run_rows
+from sonolube.rig.file.rig_folder import RUNS_FILE
 from sonolube.tasks.files import NamedBytes, file_path
 from sonolube.text.units import to_si
 from sonolube.vocabulary import quantities
@@ -80,6 +82,23 @@ def own_runs(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
     if payload.get("remove") is not None:
         sheet = without_row(sheet, row=_row({"row": payload["remove"]}))
     return _sheet_object(sheet, added)
+
+
+def folder_runs(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
+    """Table of own runs in the folder of the rig, with its state, after it was written where that is asked for.
+
+    A request has nothing, or `keep` (an upload, or null for an empty table) and `state`, as of the table that was read.
+    """
+    if not places.folder:
+        raise InvalidInput("the workbench was not opened with the folder of a rig")
+    path = Path(places.folder, RUNS_FILE)
+    if "keep" not in payload:
+        sheet, file = stored_sheet(path)
+        return _sheet_object(sheet, 0) | {"state": file.state}
+    with named_uploads():
+        sheet = read_sheet(_file(payload["keep"], places)[1]) if payload["keep"] else RunSheet()
+    file = store_sheet(sheet, SheetFile(path=path, state=str(payload.get("state", ""))))
+    return _sheet_object(sheet, 0) | {"state": file.state}
 
 
 def _sheet_object(sheet: RunSheet, added: int) -> dict[str, Any]:

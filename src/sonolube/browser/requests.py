@@ -24,12 +24,15 @@ class Places:
         Path of the map of the rig's devices; empty for the virtual tribometer.
     runs : str
         Folder of all runs of the laboratory; empty for none.
+    folder : str
+        Folder of the rig that the workbench was opened with; empty where that is a file.
     """
 
     rigs: Mapping[str, str]
     uploads: str = ""
     device_map: str = ""
     runs: str = ""
+    folder: str = ""
 
 
 Answering = Callable[[Mapping[str, Any], Places], dict[str, Any]]
@@ -40,6 +43,7 @@ VIEWS: Final = {
     "measured-table": "sonolube.browser.measured_use:measured_table",
     "measured-use": "sonolube.browser.measured_use:measured_use",
     "own-runs": "sonolube.browser.measured_use:own_runs",
+    "folder-runs": "sonolube.browser.measured_use:folder_runs",
     "recording": "sonolube.browser.recording_view:recording_view",
     "scan": "sonolube.browser.scan_view:scan_view",
     "section": "sonolube.browser.scan_view:section_view",

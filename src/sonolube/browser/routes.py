@@ -47,6 +47,8 @@ class Workbench:
         Of the rig of the laboratory; None for the virtual tribometer.
     runs : Path
         Folder of its runs.
+    folder : Path or None
+        Folder of the rig that is opened; None where that is a file.
     """
 
     def __init__(
@@ -59,6 +61,7 @@ class Workbench:
         opened: str,
         device_map: Path | None = None,
         runs: Path = Path("runs"),
+        folder: Path | None = None,
     ) -> None:
         self.pool, self.jobs, self.uploads, self.opened = pool, jobs, uploads, opened
         self._places = Places(
@@ -66,6 +69,7 @@ class Workbench:
             uploads=str(uploads.folder),
             device_map="" if device_map is None else str(device_map.resolve()),
             runs=str(runs.resolve()),
+            folder="" if folder is None else str(folder.resolve()),
         )
         self.laboratory = Laboratory(pool=pool, uploads=uploads, places=self._places, folder=laboratory_folder())
 
@@ -103,7 +107,14 @@ class Workbench:
         del request
         from sonolube import __version__
 
-        return _json({"rig": self.opened, "version": __version__, "is_running": self.laboratory.is_at_work()})
+        return _json(
+            {
+                "rig": self.opened,
+                "is_folder": bool(self._places.folder),
+                "version": __version__,
+                "is_running": self.laboratory.is_at_work(),
+            }
+        )
 
     async def _description(self, request: Request) -> Response:
         """OpenAPI description of the tasks."""

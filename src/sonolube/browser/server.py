@@ -20,6 +20,7 @@ from sonolube.browser.routes import Workbench
 from sonolube.browser.uploads import Uploads
 from sonolube.browser.worker import Pool
 from sonolube.errors import InvalidInput
+from sonolube.rig.file.rig_folder import RECORDS
 
 _HEAD_START: Final = 0.35  # seconds of the first page in the browser before the first worker
 
@@ -50,14 +51,14 @@ def run(
     hosts: Sequence[str] = (),
     opens_browser: bool = True,
     device_map: Path | None = None,
-    runs: Path = Path("runs"),
+    runs: Path | None = None,
 ) -> None:
     """Serve the workbench until it is interrupted.
 
     Parameters
     ----------
     rig : Path or None
-        File that the first page shows; an example where None.
+        File or folder of the rig that the first page shows; an example where None.
     port : int
         0 for any free one.
     host : str
@@ -69,8 +70,8 @@ def run(
     opens_browser : bool
     device_map : Path or None
         Of the rig of the laboratory; None for the virtual tribometer.
-    runs : Path
-        Folder of its runs.
+    runs : Path or None
+        Folder of its runs; where None, the records of the folder of the rig, or `runs`.
 
     Raises
     ------
@@ -116,10 +117,13 @@ def _leave(number: int, frame: object) -> None:
     sys.exit(128 + number)
 
 
-def _workbench(rig: Path | None, device_map: Path | None, runs: Path) -> Workbench:
+def _workbench(rig: Path | None, device_map: Path | None, runs: Path | None) -> Workbench:
     """Workbench with its processes."""
     cores = os.cpu_count() or 1
-    rigs = {} if rig is None else {rig.stem: str(rig.resolve())}
+    folder = rig if rig is not None and rig.is_dir() else None
+    rigs = {} if rig is None else {rig.resolve().name if folder else rig.stem: str(rig.resolve())}
+    if runs is None:
+        runs = Path("runs") if folder is None else folder / RECORDS
     return Workbench(
         pool=Pool(max(2, min(cores, 4))),
         jobs=Jobs(jobs_folder(), most=cores),
@@ -128,6 +132,7 @@ def _workbench(rig: Path | None, device_map: Path | None, runs: Path) -> Workben
         opened=next(iter(rigs), OPENED),
         device_map=device_map,
         runs=runs,
+        folder=folder,
     )
 
 

@@ -13,8 +13,10 @@ import signal
 import tempfile
 from collections.abc import Awaitable, Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import AbstractContextManager, nullcontext
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
+from pathlib import Path
 from typing import Any, Final
 
 from sonolube.browser.requests import OPENED, Places
@@ -73,7 +75,8 @@ def reply(kind: str, payload: Mapping[str, Any], places: Places) -> tuple[int, b
     from sonolube.browser.requests import KINDS
 
     try:
-        return 200, encoded(KINDS[kind](payload, places))
+        with _recipes(places):
+            return 200, encoded(KINDS[kind](payload, places))
     except UnexpectedFault as fault:
         return _FAILED, _one_line(str(fault))
     except (SonolubeError, OSError) as failure:  # as the terminal does
@@ -84,6 +87,16 @@ def reply(kind: str, payload: Mapping[str, Any], places: Places) -> tuple[int, b
         )
     except (Exception, SystemExit) as failure:  # whatever a task raises, the worker answers the next request
         return _FAILED, _one_line(str(unexpected(failure, kind, payload)))
+
+
+def _recipes(places: Places) -> AbstractContextManager[None]:
+    """Look for recipes of instruments in the folder of the rig first, where one is open."""
+    if not places.folder:
+        return nullcontext()
+    from sonolube.measurement.recordings.reader import recipes_first_in
+    from sonolube.rig.file.rig_folder import INSTRUMENTS
+
+    return recipes_first_in(Path(places.folder, INSTRUMENTS))
 
 
 def _one_line(text: str) -> bytes:

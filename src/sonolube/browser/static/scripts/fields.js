@@ -4,6 +4,7 @@
  */
 import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {ask, useReply} from './api.js';
+import {isInFolder} from './folder-runs.js';
 import {Button, classes, FileButton, Refusal, Select} from './parts.js';
 import {change} from './state.js';
 /**
@@ -353,10 +354,11 @@ export const RunsChoice = ({view, onFile}) => html`<p class="row">
     test="runs-file"
     data-test="choose-runs"
   >
-    ${view.runs ? 'Choose other runs…' : 'Choose own runs…'}
+    ${isInFolder() ? 'Add runs of a file…' : view.runs ? 'Choose other runs…' : 'Choose own runs…'}
   <//>
   ${
     view.runs &&
+    !isInFolder() &&
     html`
       <strong class="grow">${uploadOf(view.runs).name}</strong>
       <${Button} kind="small" onClick=${() => change({view: {runs: null}})} data-test="remove-runs">leave out<//>

@@ -1,6 +1,7 @@
 /** Shell of the workbench: head with pages, undo, take away and theme; below it the page of the state. */
 import {html, render, useEffect, useErrorBoundary, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {ask, enter, useConnection} from './api.js';
+import {followFolder, openFolder} from './folder-runs.js';
 import {Button, capital, Loading, Refusal, Select, Sheet, useEvents, useInView, Warning} from './parts.js';
 import {addressAsLeft, addressOf, followAddress, PAGES, redo, stored, undo, useApp} from './state.js';
 import {TakeAway} from './take-away.js';
@@ -231,6 +232,19 @@ function onKey(event) {
   step();
 }
 
+const WITH_RUNS = ['predict', 'explore', 'design', 'data'];
+
+/** Keeps the table of own runs of these pages that of the folder of the rig, where one is open. */
+function FolderRuns() {
+  const {
+    state: {page, rig, view},
+  } = useApp();
+  useEffect(() => {
+    if (WITH_RUNS.includes(page)) followFolder();
+  }, [page, rig.name, view.runs]);
+  return null;
+}
+
 async function start() {
   setTheme(storedTheme());
   const page = /^#\/(\w+)/.exec(location.hash)?.[1] ?? '';
@@ -246,9 +260,10 @@ async function start() {
     reply = await ask('api/start');
   }
   await followAddress(reply.content.rig);
+  if (reply.content.is_folder) await openFolder(reply.content.rig);
   render(null, root);
   root.replaceChildren();
-  render(html`<${AtWork} /><${Head} /><${Connection} /><main id="main"><${Page} /></main>`, root);
+  render(html`<${AtWork} /><${FolderRuns} /><${Head} /><${Connection} /><main id="main"><${Page} /></main>`, root);
 }
 
 start();

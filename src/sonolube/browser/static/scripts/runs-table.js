@@ -2,6 +2,7 @@
 import {html, useState} from '../vendor/htm-preact-3.1.1.js';
 import {ask, useReply} from './api.js';
 import {NOTHING, uploadOf} from './fields.js';
+import {folderEntry, isInFolder, keep, readFolder} from './folder-runs.js';
 import {Button, Refusal, Select} from './parts.js';
 import {change, entryNow} from './state.js';
 import {save} from './take-away.js';
@@ -43,10 +44,46 @@ const headingOf = (sheet, name) => sheet?.headings[sheet.names.indexOf(name)] ??
  * @returns {Promise<string>} why it was not taken
  */
 export async function takeSheet(sheet) {
-  const kept = sheet.csv ? await ask('api/uploads', {raw: new Blob([sheet.csv])}) : null;
-  if (kept?.failure) return kept.failure.text;
-  change({view: {runs: kept && `${kept.content.upload} own-runs.csv`}});
-  return '';
+  const made = sheet.csv ? await ask('api/uploads', {raw: new Blob([sheet.csv])}) : null;
+  if (made?.failure) return made.failure.text;
+  const entry = made && `${made.content.upload} own-runs.csv`;
+  const refused = await keep(entry ?? '');
+  if (!refused) change({view: {runs: entry}});
+  return refused;
+}
+
+/**
+ * Make an upload the table of own runs of the view, or add it to that of the folder of the rig.
+ * @param {{upload: string, name: string}} file
+ * @param {string} [page] that is shown then
+ * @returns {Promise<string>} why it was not taken
+ */
+export async function takeUpload({upload, name}, page) {
+  if (!isInFolder()) {
+    change({...(page && {page}), view: {runs: `${upload} ${name}`}});
+    return '';
+  }
+  const before = entryNow('runs') ?? folderEntry();
+  const body = {table: {upload, name}, ...(before && {runs: uploadOf(before)})};
+  const {content, failure} = await ask('api/measured-use', {body});
+  const refused = failure?.text ?? (await takeSheet(content));
+  if (!refused && page) change({page});
+  return refused;
+}
+
+/**
+ * Note on the last file, and the function that makes it the table of own runs, or a part of that of a folder.
+ * @returns {[string, (file: File|undefined) => Promise<void>]}
+ */
+export function useRunsFile() {
+  const [note, setNote] = useState('');
+  /** @param {File|undefined} file */
+  const take = async (file) => {
+    const reply = file && (await ask('api/uploads', {raw: file}));
+    const upload = reply?.content?.upload;
+    setNote(reply?.failure?.text ?? (upload ? await takeUpload({upload, name: file?.name ?? ''}) : ''));
+  };
+  return [note, take];
 }
 
 /**
@@ -184,6 +221,12 @@ export function RunsTable({view, disagreeing = []}) {
         data-test="add-column"
         onChange=${(event) => setFurther([...further, event.target.value])}
       />
+      ${
+        isInFolder() &&
+        html`<${Button} onClick=${async () => setNote(await readFolder())} data-test="read-folder">
+          Read runs.csv again
+        <//>`
+      }
       ${
         sheet?.rows.length
           ? html`<${Button}

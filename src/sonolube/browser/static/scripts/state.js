@@ -215,16 +215,25 @@ function enter(to) {
 export const setEntry = (key, text, options) =>
   change({rig: {...state.rig, changes: {...state.rig.changes, [key]: text}}}, options);
 
+/** @type {(found: State) => Promise<void>} Called with the state of a step before it is shown. */
+let adapt = async () => {};
+/** @param {(found: State) => Promise<void>} called */
+export const onStep = (called) => {
+  adapt = called;
+};
+
 /** @param {string[]} from @param {string[]} onto */
 async function step(from, onto) {
   settle();
   const to = from.pop();
   if (to === undefined) return;
   onto.push(fragment);
-  state = await decode(to);
-  fragment = to;
+  const found = await decode(to);
+  await adapt(found);
+  state = found;
+  fragment = encode(state);
   keep();
-  history.replaceState(null, '', `#${to}`);
+  history.replaceState(null, '', `#${fragment}`);
   remember();
   tell();
 }
@@ -271,6 +280,18 @@ export async function followAddress(opened) {
 export function useApp() {
   useListening(listeners);
   return {state, isMoving, canUndo: past.length > 0, canRedo: future.length > 0};
+}
+
+/** Name of the rig as it is now. @returns {string} */
+export const rigNow = () => state.rig.name;
+
+/** Set entries of the view without a step to undo. @param {Edits} view */
+export function amend(view) {
+  state = {...state, view: present({...state.view, ...view})};
+  fragment = encode(state);
+  history.replaceState(null, '', `#${fragment}`);
+  remember();
+  tell();
 }
 
 /** Entry of the view as it is now, whatever was drawn last. @param {string} name @returns {string|undefined} */

@@ -8,6 +8,7 @@ import {ask, useConnection, useReply} from '../api.js';
 import {Chart} from '../chart.js';
 import {duration, isActive, JobState, useJob} from '../job.js';
 import {Button, Card, Refusal} from '../parts.js';
+import {takeUpload} from '../runs-table.js';
 import {change, useApp} from '../state.js';
 import {offer} from '../take-away.js';
 
@@ -37,6 +38,7 @@ export const Shown = ({answer, of}) => html`
 function Compared({compared, rig}) {
   const args = {runs: {name: compared.name, upload: compared.upload}, rig};
   const job = useJob('fit', args);
+  const [note, setNote] = useState('');
   useEffect(() => offer('fit', args), [JSON.stringify(args)]);
   return html`<div class="lab-opened" data-test="compared">
     <${Shown} answer=${compared} of=${compared.upload} />
@@ -50,12 +52,13 @@ function Compared({compared, rig}) {
         Fit models to these runs
       <//>
       <${Button}
-        onClick=${() => change({page: 'predict', view: {runs: `${compared.upload} ${compared.name}`}})}
+        onClick=${async () => setNote(await takeUpload(compared, 'predict'))}
         data-test="predict-runs"
       >
         Predict with these runs
       <//>
     </p>
+    <${Refusal} text=${note} role="alert" />
     ${job.job && html`<${JobState} job=${job.job} cancel=${job.cancel} />`}
     <${Failure} failure=${job.failure} />
     ${job.content && html`<div data-test="fitted"><${Shown} answer=${job.content} of="fit" /></div>`}

@@ -8,10 +8,11 @@ import {Chart} from '../chart.js';
 import {Fields, given, Ranges, useSchema, withNames} from '../design/asked.js';
 import {JobFiles, Saves} from '../design/files.js';
 import {Front} from '../design/front.js';
-import {MaterialChoices, RunsChoice, uploadOf, useFile} from '../fields.js';
+import {MaterialChoices, RunsChoice, uploadOf} from '../fields.js';
 import {isActive, JobState, useJob, Waiting} from '../job.js';
 import {Button, Card, classes, Loading, Refusal} from '../parts.js';
 import {useRig, Workspace} from '../rig-panel.js';
+import {useRunsFile} from '../runs-table.js';
 import {change, present, useApp} from '../state.js';
 import {offer} from '../take-away.js';
 import {Choices} from './explore.js';
@@ -462,7 +463,7 @@ const PARTS = {
 export default function Design() {
   const {state} = useApp();
   const {view: rigView, failure} = useRig();
-  const [note, takeRuns] = useFile('runs');
+  const [note, takeRuns] = useRunsFile();
   const part = Object.hasOwn(PARTS, state.view.part) ? state.view.part : 'designs';
   const [, title, task, Part] = PARTS[part];
   const described = useSchema(task);

@@ -4,10 +4,11 @@ import {Blocks, Caveats, drawings, Failure, RefusedNote} from '../answer.js';
 import {taskPath, useReply} from '../api.js';
 import {Chart} from '../chart.js';
 import {fieldOf as drawnField} from '../chart-scale.js';
-import {Labelled, MaterialChoices, refusedBy, RunsChoice, TextField, typed, uploadOf, useFile} from '../fields.js';
+import {Labelled, MaterialChoices, refusedBy, RunsChoice, TextField, typed, uploadOf} from '../fields.js';
 import {isActive, JobState, useJob, Waiting} from '../job.js';
 import {Button, capital, Card, Refusal, Select, useInView} from '../parts.js';
 import {useRig, Workspace} from '../rig-panel.js';
+import {useRunsFile} from '../runs-table.js';
 import {change, present, settle, useApp} from '../state.js';
 import {offer} from '../take-away.js';
 
@@ -346,7 +347,7 @@ function Study({study, args, fields, title}) {
   const {state, isMoving} = useApp();
   const {content, failure, refused, isWaiting, isOld, job, of} = useStudy(study, args, isMoving);
   const [note, setNote] = useState('');
-  const [runsNote, takeRuns] = useFile('runs');
+  const [runsNote, takeRuns] = useRunsFile();
   const charts = useMemo(
     () => (content ? drawings(content).map((one) => ({...one, chart: withPoint(one.chart, fields)})) : []),
     [content, fields],

@@ -4,10 +4,10 @@ import {Caveats, Failure, RefusedNote, TextTable} from '../answer.js';
 import {ask, callTask, inTurn, useLate, useReply} from '../api.js';
 import {Bar, ChangeBars} from '../change-bars.js';
 import {Chart} from '../chart.js';
-import {focusField, MaterialChoices, RunsChoice, typed, uploadOf, useFile} from '../fields.js';
+import {focusField, MaterialChoices, RunsChoice, typed, uploadOf} from '../fields.js';
 import {Button, Card, classes, Refusal} from '../parts.js';
 import {useRig, Workspace} from '../rig-panel.js';
-import {RunsTable} from '../runs-table.js';
+import {RunsTable, useRunsFile} from '../runs-table.js';
 import {addressOf, change, decode, encode, present, setEntry, useApp} from '../state.js';
 import {offer} from '../take-away.js';
 
@@ -332,7 +332,7 @@ function dragOf(view, chart) {
 export default function Predict() {
   const {state, isMoving} = useApp();
   const {view} = useRig();
-  const [note, onFile] = useFile('runs');
+  const [note, onFile] = useRunsFile();
   const {pin, disc, runs} = state.view;
   const body = argumentsOf(state, isMoving);
   const reply = useReply('predict', state.rig.name ? `api/tasks/predict${isMoving ? '?tables=no' : ''}` : null, body);
