@@ -5,9 +5,9 @@ Run: python examples/collar_resonance.py (needs netgen-mesher)
 
 from dataclasses import replace
 
-from sonolube.dong2015.collar import COLLAR_DIMENSION_SOURCES, FINAL_COLLAR
-from sonolube.dong2015.collar_analysis import reduced_collar_model
-from sonolube.dong2015.collar_tuning import main_resonance
+from dong2015.hardware.collar import COLLAR_DIMENSION_SOURCES, FINAL_COLLAR
+from dong2015.hardware.collar_analysis import reduced_collar_model
+from dong2015.hardware.collar_tuning import main_resonance
 from sonolube.models.fem import harmonic_response
 
 for case, changes in (("top closed", {}), ("top open", {"open_top": True}), ("base clamped", {"clamped": True})):

@@ -21,14 +21,7 @@ from typing import Any
 
 ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "src" / "sonolube"
-_OTHER_TESTS = (
-    "tests/validation",
-    "tests/rig",
-    "tests/reproduction",
-    "tests/design",
-    "tests/dong2015",
-    "tests/measurement",
-)
+_OTHER_TESTS = ("tests/validation", "tests/rig", "tests/studies", "tests/design", "tests/measurement")
 _LIMIT = 900.0  # s, of the tests of a stage
 _NOT_A_FAILURE = (0, 5)  # exit statuses of pytest: all pass, none collected
 _NOT_RUN = 4  # exit status of pytest: a test is not there, or the import of its file fails

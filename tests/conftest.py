@@ -68,3 +68,15 @@ def _largest_file(size: int) -> Iterator[None]:
 def largest_file() -> Callable[[int], AbstractContextManager[None]]:
     """Context in which no file of this process grows beyond a size in bytes: writing then fails as on a full disk."""
     return _largest_file
+
+
+@pytest.fixture(scope="session")
+def chapter_3_report(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder of the report of chapter 3 of the dissertation, which no test changes."""
+    from tests.reproduced import reproduced
+
+    from dong2015 import write_report
+
+    folder = tmp_path_factory.mktemp("report")
+    write_report(reproduced(3), folder=folder)
+    return folder

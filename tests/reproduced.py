@@ -5,8 +5,8 @@ from dataclasses import replace
 from functools import cache
 from unittest.mock import patch
 
-from sonolube.reproduction import SECTIONS, Reproduction, Row, chapters, reproduction
-from sonolube.reproduction.chapters import Section
+from dong2015 import SECTIONS, Reproduction, Row, chapters, reproduction
+from dong2015.chapters import Section
 
 
 def _computed_once(section: Section) -> Section:

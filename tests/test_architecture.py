@@ -15,6 +15,7 @@ import grimp
 import pytest
 
 ROOT = Path(__file__).parents[1]
+SOURCES = [path for folder in ("src", "studies") for path in (ROOT / folder).rglob("*.py")]
 PHYSICS = (
     *(f"models.{room}" for room in ("surfaces", "contact", "friction", "wear", "thermal", "actuator", "dynamics")),
     "facts.metrics",
@@ -102,7 +103,7 @@ def test_code_lines_are_counted_without_docstrings_comments_and_blank_lines() ->
 
 
 def test_no_file_outgrows_six_hundred_lines_of_code() -> None:
-    long = [path for path in (ROOT / "src").rglob("*.py") if code_lines(path.read_text(encoding="utf-8")) > 600]
+    long = [path for path in SOURCES if code_lines(path.read_text(encoding="utf-8")) > 600]
     assert long == []
 
 
@@ -117,18 +118,21 @@ def test_the_picture_of_the_rooms_is_up_to_date() -> None:
 
 
 def test_no_product_file_is_named_like_a_test() -> None:
-    assert [path for path in (ROOT / "src").rglob("*.py") if path.name.startswith(("test_", "conftest"))] == []
+    assert [path for path in SOURCES if path.name.startswith(("test_", "conftest"))] == []
 
 
 def test_no_folder_holds_more_than_26_modules() -> None:
-    modules = Counter(path.parent for path in (ROOT / "src").rglob("*.py") if path.name != "__init__.py")
+    modules = Counter(path.parent for path in SOURCES if path.name != "__init__.py")
     assert [(folder, count) for folder, count in modules.items() if count > 26] == []
 
 
 def _faces() -> list[str]:
     """Rooms whose face is a stub, such as sonolube.models.contact."""
-    stubs = (ROOT / "src").rglob("__init__.pyi")
-    return sorted(".".join(stub.parent.relative_to(ROOT / "src").parts) for stub in stubs)
+    return sorted(
+        ".".join(stub.parent.relative_to(ROOT / folder).parts)
+        for folder in ("src", "studies")
+        for stub in (ROOT / folder).rglob("__init__.pyi")
+    )
 
 
 @pytest.mark.parametrize("room", _faces())

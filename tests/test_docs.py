@@ -139,7 +139,7 @@ def test_the_first_line_of_an_example_rig_points_at_the_schema(rig: Path) -> Non
 
 
 def test_every_verdict_is_explained() -> None:
-    from sonolube.reproduction import Verdict
+    from dong2015 import Verdict
 
     page = text_of(DOCS / "validation.md")
     assert all(f"\n`{verdict.value}`\n: " in page for verdict in Verdict)

@@ -9,15 +9,16 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-SOURCE = ROOT / "src"
+SOURCES = (ROOT / "src", ROOT / "studies")
 FEWEST = 80
 OPTIONS = doctest.REPORT_ONLY_FIRST_FAILURE
 
 
 def modules_with_examples() -> Iterator[str]:
-    for path in sorted(SOURCE.rglob("*.py")):
-        if ">>> " in path.read_text(encoding="utf-8"):
-            yield ".".join(path.relative_to(SOURCE).with_suffix("").parts).removesuffix(".__init__")
+    for source in SOURCES:
+        for path in sorted(source.rglob("*.py")):
+            if ">>> " in path.read_text(encoding="utf-8"):
+                yield ".".join(path.relative_to(source).with_suffix("").parts).removesuffix(".__init__")
 
 
 def doctests() -> Iterator[doctest.DocTest]:
@@ -28,11 +29,12 @@ def doctests() -> Iterator[doctest.DocTest]:
 
 def exported_names() -> Iterator[str]:
     """Dotted names, in the modules that define them, of what the faces export."""
-    for stub in SOURCE.rglob("__init__.pyi"):
-        package = ".".join(stub.parent.relative_to(SOURCE).parts)
-        for statement in ast.parse(stub.read_text(encoding="utf-8")).body:
-            if isinstance(statement, ast.ImportFrom):
-                yield from (f"{package}.{statement.module}.{each.name}" for each in statement.names)
+    for source in SOURCES:
+        for stub in source.rglob("__init__.pyi"):
+            package = ".".join(stub.parent.relative_to(source).parts)
+            for statement in ast.parse(stub.read_text(encoding="utf-8")).body:
+                if isinstance(statement, ast.ImportFrom):
+                    yield from (f"{package}.{statement.module}.{each.name}" for each in statement.names)
 
 
 EXAMPLES = [test for test in doctests() if test.examples]

@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 from pytest import MonkeyPatch, raises
 
+from reference_solutions import boundary_element_contact
 from sonolube.errors import MissingPackage
 from sonolube.extras import EXTRAS, missing_package
 from sonolube.models.surfaces import HeightMap
-from sonolube.reference_solutions import boundary_element_contact
 
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
@@ -24,16 +24,19 @@ def names(requirements: list[str]) -> set[str]:
     return {re.split(r"[<>=;\[ ]", each)[0].lower().replace("_", "-") for each in requirements}
 
 
+OWN = {"sonolube", "dong2015", "reference_solutions"}
+
+
 def imported_distributions() -> Mapping[str, set[str]]:
     """Names under which a module of the package's sources may be installed, by the module."""
     known = packages_distributions()
     found: dict[str, set[str]] = {}
-    for path in (ROOT / "src").rglob("*.py"):
+    for path in [*(ROOT / "src").rglob("*.py"), *(ROOT / "studies").rglob("*.py")]:
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             absolute = isinstance(node, ast.ImportFrom) and not node.level
             modules = [node.module or ""] if isinstance(node, ast.ImportFrom) and absolute else []
             modules += [each.name for each in node.names] if isinstance(node, ast.Import) else []
-            for top in {module.partition(".")[0] for module in modules} - {"sonolube", *sys.stdlib_module_names}:
+            for top in {module.partition(".")[0] for module in modules} - OWN - {*sys.stdlib_module_names}:
                 found[top] = {each.lower().replace("_", "-") for each in known.get(top, [top])}
     return found
 

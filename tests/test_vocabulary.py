@@ -9,6 +9,8 @@ from typing import Any
 
 import pytest
 
+import dong2015
+import reference_solutions
 import sonolube
 from sonolube.errors import UnknownName
 from sonolube.text.units import to_si
@@ -18,8 +20,14 @@ ENTRY = re.compile(r"^(\w+(?:, \w+)*) : [^\n]*\n((?:[ ]{4,}[^\n]*\n?|\n(?=[ ]{4}
 UNIT = re.compile(r"\[([^\[\]]*)\]\s*$")
 
 
+def modules() -> Iterator[pkgutil.ModuleInfo]:
+    """Modules of the library and of the studies beside it."""
+    for package in (sonolube, dong2015, reference_solutions):
+        yield from pkgutil.walk_packages(package.__path__, f"{package.__name__}.")
+
+
 def public_things() -> Iterator[tuple[str, Any]]:
-    for found in pkgutil.walk_packages(sonolube.__path__, "sonolube."):
+    for found in modules():
         module = importlib.import_module(found.name)
         for name, thing in vars(module).items():
             if name.startswith("_") or getattr(thing, "__module__", None) != found.name:
@@ -57,8 +65,8 @@ def unit_faults(name: str, thing: Any) -> Iterator[str]:
 
 def exported_names() -> set[str]:
     """Names that the face of any room exports."""
-    rooms = (found.name for found in pkgutil.walk_packages(sonolube.__path__, "sonolube.") if found.ispkg)
-    return {name for room in (*rooms, "sonolube") for name in getattr(importlib.import_module(room), "__all__", ())}
+    rooms = ["sonolube", "dong2015", "reference_solutions", *(found.name for found in modules() if found.ispkg)]
+    return {name for room in rooms for name in getattr(importlib.import_module(room), "__all__", ())}
 
 
 def argument_faults(name: str, function: Any, *, is_exported: bool) -> Iterator[str]:

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 SOURCE = Path(__file__).parents[1] / "src" / "sonolube"
+STUDIES = Path(__file__).parents[1] / "studies"
 WRITERS = {SOURCE / "storage" / "files.py", SOURCE / "storage" / "growing_files.py"}
 METHODS = {  # of paths, or of modules that move and remove files
     *("write_text", "write_bytes", "touch", "unlink", "rename", "replace", "symlink_to", "hardlink_to", "link_to"),
@@ -118,8 +119,8 @@ def writing_calls(tree: ast.Module) -> Iterator[str]:
 
 def test_files_alone_writes() -> None:
     found = []
-    for path in sorted({*SOURCE.rglob("*.py")} - WRITERS):
-        place = path.relative_to(SOURCE).as_posix()
+    for path in sorted({*SOURCE.rglob("*.py"), *STUDIES.rglob("*.py")} - WRITERS):
+        place = path.relative_to(SOURCE if path.is_relative_to(SOURCE) else STUDIES).as_posix()
         calls = writing_calls(ast.parse(path.read_text(encoding="utf-8")))
         excepted = next((calls for beginning, calls in EXCEPTED.items() if place.startswith(beginning)), ())
         found += [f"{place}:{call}" for call in calls if not any(each in call for each in excepted)]

@@ -9,8 +9,8 @@ from scipy.optimize import minimize
 from scipy.special import i0
 from tests.same import same
 
+from dong2015.friction_models.variants import reported_fits
 from sonolube.models.friction import EMPIRICAL_MEMORY_LENGTH, sine_stick_slip_ratio
-from sonolube.reproduction.friction_models.variants import reported_fits
 from sonolube.validation.assessment import (
     FITTED_SETS,
     SETS_WITHOUT_POWER_MAP,

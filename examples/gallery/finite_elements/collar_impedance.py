@@ -7,8 +7,8 @@ reduced model of twelve modes. Opening the top lowers the resonance.
 import matplotlib.pyplot as plt
 import numpy as np
 
-from sonolube.dong2015.collar import FINAL_COLLAR
-from sonolube.dong2015.collar_analysis import reduced_collar_model
+from dong2015.hardware.collar import FINAL_COLLAR
+from dong2015.hardware.collar_analysis import reduced_collar_model
 from sonolube.figure import publication_style
 from sonolube.models.fem import harmonic_response
 

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 from pytest import approx
 
+from dong2015.chapter2.poisson_horn import friction_on_face
 from sonolube.design.horns.face import transition_region
-from sonolube.reproduction.chapter2.poisson_horn import friction_on_face
 
 Program = Callable[..., Any]
 

@@ -11,11 +11,11 @@ from pytest import approx
 
 pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 
-from sonolube.dong2015 import FINAL_COLLAR, POISSON_HORN_SOLIDS, main_resonance, reduced_collar_model
+from dong2015.chapter2.poisson_horn import ASSUMED_SOLIDS
+from dong2015.hardware import FINAL_COLLAR, POISSON_HORN_SOLIDS, main_resonance, reduced_collar_model
 from sonolube.models.dynamics import drive_receptance
 from sonolube.models.fem import change_order, generate_mesh, harmonic_response, reduce_model
 from sonolube.models.fem.results.part_modes import starting_size
-from sonolube.reproduction.chapter2.poisson_horn import ASSUMED_SOLIDS
 from sonolube.rig import read_rig
 from sonolube.rig.driven_rig import driven_rig
 from sonolube.tasks.parts.named_parts import transducers
