@@ -28,6 +28,8 @@ _FIRST: Final = (
 )
 """Entries of the operating point, above all others."""
 
+_CALIBRATION: Final = "vibration.calibration"
+_CALIBRATION_HELP: Final = "voltage of the drive, peak to peak, and its amplitude, such as 25 V = 2 um"
 _DECADE: Final = 10.0  # of the value of the file, over which a slider runs below and above
 _PREFIXES: Final = {"n": 1e-9, "u": 1e-6, "m": 1e-3, "": 1.0, "k": 1e3, "M": 1e6, "G": 1e9}
 _READABLE: Final = (1e-5, 1e7)  # sizes of the numbers along an axis
@@ -45,7 +47,7 @@ def rig_view(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
         with names_only(path):
             original, content = rig_contents(path, (), changes)
             rig = rig_of_file(path, content, changes=changes)
-    fields = rig_fields(content, original, rig.assumptions)
+    fields = [*rig_fields(content, original, rig.assumptions), *_calibration_to_add(content)]
     first = {key: place for place, key in enumerate(_FIRST)}
     return {
         "title": rig.title,
@@ -78,6 +80,7 @@ def rig_fields(
         ends = _ends(before.get(key, value), text)
         low, high = (None, None) if number is None or ends is None else ends
         advice = guidance().get(name)
+        help_text = _CALIBRATION_HELP if key == _CALIBRATION else "" if advice is None else advice.text
         yield {
             "key": key,
             "label": known.meaning if known is not None else name.replace("_", " ").capitalize(),
@@ -86,10 +89,25 @@ def rig_fields(
             "lowest": low,  # of a slider, in this unit; None for what is no number
             "highest": high,
             "assumed": assumptions.get(key, ""),
-            "help": "" if advice is None else advice.text,
+            "help": help_text,
             "is_first": key in _FIRST,
             "numbers": {} if known is None or number is None else _numbers(text, known.unit),
         }
+
+
+def _calibration_to_add(content: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Empty field for the calibration of the drive where nothing scales the stated amplitude of a rig by a voltage."""
+    vibration, others = content.get("vibration", {}), content.keys() & {"actuator", "drive", "waveguide", "structure"}
+    if "vibration_amplitude" not in vibration or "calibration" in vibration:
+        return []
+    if "voltage_peak_to_peak" in vibration or any("voltage" in str(content[each]) for each in others):
+        return []
+    return [
+        {
+            **{"key": _CALIBRATION, "label": "Calibration", "text": "", "unit": "", "lowest": None, "highest": None},
+            **{"assumed": "", "help": _CALIBRATION_HELP, "is_first": False, "numbers": {}},
+        }
+    ]
 
 
 def _entries(content: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, str | float]]:
@@ -105,7 +123,9 @@ def _entries(content: Mapping[str, Any], before: str = "") -> Iterator[tuple[str
 
 
 def _number_and_unit(text: str) -> tuple[float | None, str]:
-    """Number and unit of a value as it is written; None and nothing for words."""
+    """Number and unit of a value as it is written; None and nothing for words and for two values."""
+    if "=" in text:
+        return None, ""
     number, _, unit = text.strip().partition(" ")
     try:
         return float(number), unit.strip()
