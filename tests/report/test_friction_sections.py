@@ -49,7 +49,8 @@ def test_a_coefficient_has_its_mean_scatter_windows_and_steady_state_and_no_forc
     assert found["friction_coefficient_fluctuation"] == approx(0.01, rel=0.05)
     assert found["steady_friction_coefficient"] == approx(0.3, abs=1e-3)
     assert not any("force" in name for name in found)
-    assert any("give the load" in reason for reason in sheet.not_found)
+    assert any("which a stated load gives" in reason for reason in sheet.not_found)
+    assert {value.unit for value in sheet.values} == {"", "m", "s"}
     assert next(each for each in sheet.values if each.name == "mean_coefficient").label == (
         "Mean coefficient of the whole recording"
     )

@@ -193,7 +193,7 @@ def _sections(recording: "xr.Dataset", name: str, settings: FrictionSettings) ->
     sections.append(_windows(recording, windows, steady))
     sections += _steps_or_stick_slip(whole, recording, name, settings)
     if name != "friction_force":
-        needs = "stick-slip, work and wobble: are of a force; give the load with the coefficient"
+        needs = "stick-slip, work and wobble: of a force alone, which a stated load gives"
         return [*sections, sheet.Sheet(not_found=(needs,))]
     if "relative_velocity" in recording.variables:
         sections.append(sheet.attempted(partial(_cycles, whole), what="work of friction"))
@@ -223,9 +223,15 @@ def _mean_of_all(recording: "xr.Dataset", name: str) -> sheet.Sheet:
 def _mean_sheet(recording: "xr.Dataset", channel: str, name: str, label: str) -> sheet.Sheet:
     """Mean and standard deviation of a channel, the uncertainty of the mean by the autocorrelation."""
     mean = correlated_mean(channel_values(recording, channel))
-    unit = str(recording[channel].attrs.get("units", ""))
+    unit = _unit(recording, channel)
     scatter = sheet.Value(f"{channel}_deviation", "Standard deviation of the samples", mean.deviation, unit)
     return sheet.Sheet(values=(sheet.Value(name, label, mean.mean, unit, uncertainty=mean.uncertainty), scatter))
+
+
+def _unit(recording: "xr.Dataset", channel: str) -> str:
+    """Unit of a channel, empty for a pure number."""
+    unit = str(recording[channel].attrs.get("units", ""))
+    return "" if unit == "1" else unit
 
 
 def _rest_caveat(recording: "xr.Dataset", rest: Mask) -> list[sheet.Sheet]:
@@ -254,7 +260,7 @@ def _fluctuation(windows: WindowStatistics) -> sheet.Value:
     squares, weights = windows.fluctuation[filled] ** 2, windows.samples[filled]
     rms = float(np.sqrt(np.average(squares, weights=weights)))
     label = f"Root mean square of the fluctuation in windows of {span}"
-    return sheet.Value(f"{windows.channel}_fluctuation", label, rms, windows.unit)
+    return sheet.Value(f"{windows.channel}_fluctuation", label, rms, "" if windows.unit == "1" else windows.unit)
 
 
 def _trace(
@@ -412,7 +418,7 @@ def joined_friction_sheet(paths: Sequence[Path], *, settings: FrictionSettings) 
     joined = join_recordings(parts)
     whole = recording_sheet(joined, title=f"{len(paths)} files as one test", settings=settings)
     name = friction_channel(joined)
-    unit = str(joined[name].attrs.get("units", ""))
+    unit = _unit(joined, name)
     moving = "relative_velocity" in joined.variables and name == "friction_force"
     columns = [
         *_COLUMNS,
