@@ -224,3 +224,16 @@ def test_what_is_no_quantity_of_an_impedance_is_none(text: str) -> None:
 def test_the_columns_that_were_read_are_named(tmp_path: Path) -> None:
     found = read(tmp_path, text("Nr,Frequency (Hz),Cp (F),D,note", F, F, Y.imag / W, SIGNED, F))
     assert found.columns == "Frequency (Hz), Cp (F), D"
+
+
+@mark.parametrize(
+    "heading",
+    ["frequency [Hz]  R [ohm]  X [ohm]", "frequency(Hz) R(ohm) X(ohm)", "# f[Hz]   R[ohm]   X[ohm]", "Sweep 3\nf R X"],
+)
+def test_a_table_between_blanks_is_read(heading: str, tmp_path: Path) -> None:
+    rows = [f"  {1000 + 10 * k:8.1f}   {3 + k:6.2f}  {-4.5:6.2f}" for k in range(12)]
+    path = tmp_path / "blanks.txt"
+    path.write_text("\n".join(["Bridge B, 2 V", heading, *rows, ""]))
+    spectrum = read_impedance(path)
+    assert spectrum.frequency == approx(1000 + 10 * np.arange(12.0))
+    assert spectrum.impedance == approx(3 + np.arange(12.0) - 4.5j)

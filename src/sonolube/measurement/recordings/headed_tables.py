@@ -11,7 +11,15 @@ from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_files import detected_decimal_sign, parse_number, require_channels
 from sonolube.measurement.recordings.mapping import TextLayout
-from sonolube.measurement.recordings.text_tables import SEPARATORS, NumberedCells, TextTable, text_tables
+from sonolube.measurement.recordings.table_layout import heading_cells
+from sonolube.measurement.recordings.text_tables import (
+    NARROW,
+    SEPARATORS,
+    NumberedCells,
+    TextTable,
+    is_number,
+    text_tables,
+)
 
 _LARGEST = 1e30  # in any unit
 _COMMENTS = "#!%"
@@ -46,8 +54,33 @@ def headed_table(
 ) -> HeadedTable | None:
     """Table below the first line whose headings are complete, alone or with the units of the next; None without one.
 
-    Headings may be a comment where no other line has them.
+    Headings may be a comment where no other line has them. Blanks separate cells where nothing else does.
     """
+    found = _headed(lines, path, is_complete, is_unit)
+    if found is None and (tabbed := _tabbed(lines)):
+        found = _headed(tabbed, path, is_complete, is_unit)
+    return found if found is None else replace(found, preamble=tuple(lines[: found.table.line - 1]))
+
+
+def _tabbed(lines: Sequence[str]) -> list[str]:
+    """Lines of a table of numbers between blanks with tabs in their place; none of another text."""
+    rows = (cells for line in lines if len(cells := line.split()) > 1 and all(map(is_number, cells)))
+    width = len(next(rows, ()))
+    if not width:
+        return []
+    tabbed = []
+    for line in lines:
+        cells = line.split()
+        if not (cells and is_number(cells[0])):
+            cells = heading_cells(line, NARROW, width)
+        tabbed.append("\t".join(cells) if len(cells) == width else line)
+    return tabbed
+
+
+def _headed(
+    lines: Sequence[str], path: Path, is_complete: Callable[[Sequence[str]], bool], is_unit: Callable[[str], bool]
+) -> HeadedTable | None:
+    """Table between usual separators, as `headed_table`."""
     kept = without_comments(lines)
     for candidates in (kept, [line.lstrip(_COMMENTS) for line in lines[: len(kept)]]):
         for at, separator, labels in possible_headings(candidates, path):
@@ -55,8 +88,7 @@ def headed_table(
             has_units = bool(units) and is_complete(_with_units(labels, units))
             if has_units or is_complete(labels):
                 body = [*kept[:at], candidates[at], *kept[at + 1 :]]
-                table = _cut_table(body, at, separator, path, has_units=has_units)
-                return replace(table, preamble=tuple(lines[:at]))
+                return _cut_table(body, at, separator, path, has_units=has_units)
     return None
 
 

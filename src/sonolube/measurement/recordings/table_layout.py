@@ -143,7 +143,7 @@ def found_table(text: str, path: Path) -> FoundTable | None:
     rows = text_rows(lines, found.first_row, found.separator, path, is_comment=_is_comment)
     first = next(rows)
     heads = [
-        _heading_cells(lines[at], found.separator, len(first[1])) if at is not None else []
+        heading_cells(lines[at], found.separator, len(first[1])) if at is not None else []
         for at in (found.labels, found.units)
     ]
     labels = labels_of_cells(heads[0] or first[1], found.first_row, path, is_headless=found.labels is None)
@@ -263,7 +263,7 @@ def _labels_and_units(
     for at in range(first - 1, -1, -1):
         if not lines[at].strip(" \t\r\n,;"):
             continue
-        cells = _heading_cells(lines[at], separator, width)
+        cells = heading_cells(lines[at], separator, width)
         while cells and not cells[-1].strip():
             cells.pop()
         is_heading = len(row) <= len(cells) <= width + _WIDER and not all(map(is_value, filter(None, cells)))
@@ -271,18 +271,18 @@ def _labels_and_units(
             break
         above.append(at)
     for near, over in pairwise(above):
-        if _are_units(_heading_cells(lines[near], separator, width)):
+        if _are_units(heading_cells(lines[near], separator, width)):
             return over, near
     return (above[0] if above else None), None
 
 
-def _heading_cells(line: str, separator: str, width: int) -> list[str]:
+def heading_cells(line: str, separator: str, columns: int) -> list[str]:
     """Cells of a line above the rows, without the sign of a comment; labels of several words between blanks."""
     text = line.strip("\r\n").lstrip().lstrip(_COMMENT_SIGNS) if _is_comment(line) else line
     if separator != " ":
         return _cells(text, separator)
     wide = re.split(r"\t|\s{2,}", text.strip())
-    return wide if len(wide) == width else _IN_BRACKETS.findall(text)
+    return wide if len(wide) == columns else _IN_BRACKETS.findall(text)
 
 
 def _are_units(cells: Sequence[str]) -> bool:
