@@ -8,6 +8,7 @@ from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.clocks import stamped_seconds
+from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping, TextLayout
 from sonolube.measurement.recordings.reader import read_recording
 
 FORCE = 2.0 + 0.1 * np.sin(np.arange(400) / 7)
@@ -102,3 +103,14 @@ def test_zeros_that_fill_the_last_line_of_a_universal_file_are_no_samples(tmp_pa
     (tmp_path / "more.uff").write_text(universal_file([2.0] * 30, 25))
     with raises(InvalidInput, match="a response of 25 values has 30"):
         read_recording(tmp_path / "more.uff")
+
+
+def test_a_mapping_that_states_a_blank_as_the_separator_keeps_quoted_labels(tmp_path: Path) -> None:
+    path = tmp_path / "quoted.txt"
+    path.write_text("\n".join(['"Time of day" "Friction force"', *(f"{n / 100:.2f} {1 + n % 2}" for n in range(20))]))
+    mapping = RecordingMapping(
+        channels={"friction_force": ChannelSource(column="Friction force", unit="N")},
+        axis=ChannelSource(column="Time of day", unit="s"),
+        text=TextLayout(separator=" "),
+    )
+    assert float(read_recording(path, mapping=mapping)["friction_force"].mean()) == approx(1.5)

@@ -25,7 +25,7 @@ from sonolube.measurement.recordings.text_tables import (
     unit_of_cell,
 )
 
-_SEPARATORS = SEPARATORS + NARROW
+_SEPARATORS = (*SEPARATORS, NARROW)
 _FEWEST_LINES = 8  # of a file whose layout is sought
 _LONGEST_PREAMBLE = 400  # lines
 _LOOKED_AT = 1 << 16  # characters of the beginning and of the middle of a file
@@ -211,7 +211,7 @@ def _is_comment(line: str) -> bool:
 def _cells(line: str, separator: str) -> list[str]:
     """Cells of a line."""
     line = line.rstrip("\r\n")
-    if separator == " ":
+    if separator == NARROW:
         return line.split()
     if '"' in line:
         return next(csv.reader([line], delimiter=separator), [])
@@ -279,7 +279,7 @@ def _labels_and_units(
 def heading_cells(line: str, separator: str, columns: int) -> list[str]:
     """Cells of a line above the rows, without the sign of a comment; labels of several words between blanks."""
     text = line.strip("\r\n").lstrip().lstrip(_COMMENT_SIGNS) if _is_comment(line) else line
-    if separator != " ":
+    if separator != NARROW:
         return _cells(text, separator)
     wide = re.split(r"\t|\s{2,}", text.strip())
     return wide if len(wide) == columns else _IN_BRACKETS.findall(text)

@@ -96,10 +96,10 @@ def is_text(rows: Sequence[NumberedCells], index: int, decimal_sign: str, missin
 SEPARATORS = "\t;,|"
 """Between the cells of a row; the first ones are preferred."""
 
-WIDE, NARROW = "  ", " "
-"""Separators that are two blanks or more, and one or more."""
+WIDE, NARROW = r"\s{2,}|\t", r"\s+"
+"""Separators that are two blanks or more, and one or more, as regular expressions; one blank alone is as it is."""
 
-_BLANKS = {WIDE: re.compile(r"\s{2,}|\t"), NARROW: re.compile(r"\s+")}
+_BLANKS = {pattern: re.compile(pattern) for pattern in (WIDE, NARROW)}
 
 
 def text_rows(
