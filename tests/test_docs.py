@@ -87,6 +87,19 @@ def test_a_command_of_the_pages_runs_as_it_stands(
     assert (ended.value.code or 0) == (2 if refused else 0), capfd.readouterr().err
 
 
+def test_the_commands_of_the_walk_run_one_after_the_other(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    monkeypatch.chdir(tmp_path)
+    walk = re.findall(r"^```\{answer\} (sonolube .*)$", text_of(DOCS / "using-folder.md"), flags=re.MULTILINE)
+    assert len(walk) > 6
+    for call in walk:
+        with pytest.raises(SystemExit) as ended:
+            main(shlex.split(call)[1:])
+        assert (ended.value.code or 0) == 0, capfd.readouterr().err
+
+
 def test_every_room_and_module_at_the_top_has_its_reference() -> None:
     top = {f"sonolube.{module.name}" for module in pkgutil.iter_modules(sonolube.__path__)}
     top -= {"sonolube.cli", "sonolube.__main__"}

@@ -11,7 +11,7 @@ import shutil
 import tempfile
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import chdir, contextmanager, redirect_stderr, redirect_stdout
+from contextlib import chdir, redirect_stderr, redirect_stdout
 from html import escape
 from importlib.resources import files
 from inspect import ismodule
@@ -346,18 +346,23 @@ TABLES: Mapping[str, Callable[[], str]] = {
 class Answer(SphinxDirective):
     """Directive for a command and its output, run in a folder with `examples` and `my-rig.toml`.
 
-    With the option `refused` the command must end with exit code 2.
+    With the option `refused` the command must end with exit code 2; with `continues` it runs in the folder of the one
+    before on its page.
     """
 
     required_arguments = 1
     final_argument_whitespace = True
-    option_spec: ClassVar = {"refused": directives.flag}
+    option_spec: ClassVar = {"refused": directives.flag, "continues": directives.flag}
+    folders: ClassVar[dict[str, tempfile.TemporaryDirectory[str]]] = {}
 
     def run(self) -> list[nodes.Node]:
         """Block of text with the command and its output."""
         self.env.note_reread()
         command = self.arguments[0]
-        code, printed = answer(command)
+        name = self.env.docname
+        if "continues" not in self.options or name not in self.folders:
+            self.folders[name] = scratch_folder()
+        code, printed = answer(command, Path(self.folders[name].name))
         if code != (2 if "refused" in self.options else 0):
             raise self.error(f"exit code {code}:\n{printed}")
         lines = [_line("command", f"$ {command}"), *(_line(_kind(line), line) for line in printed.splitlines())]
@@ -375,10 +380,10 @@ def _kind(line: str) -> str:
     return "row" if len(columns) > 2 else "text"
 
 
-def answer(command: str) -> tuple[object, str]:
-    """Exit code and output of a command, standard error included."""
+def answer(command: str, folder: Path) -> tuple[object, str]:
+    """Exit code and output of a command in a folder, standard error included."""
     printed = io.StringIO()
-    with scratch_folder() as folder, chdir(folder), redirect_stdout(printed), redirect_stderr(printed):
+    with chdir(folder), redirect_stdout(printed), redirect_stderr(printed):
         try:
             main(shlex.split(command)[1:])
         except SystemExit as end:
@@ -386,14 +391,12 @@ def answer(command: str) -> tuple[object, str]:
     raise AssertionError("a command ends by exiting")
 
 
-@contextmanager
-def scratch_folder() -> Iterator[Path]:
+def scratch_folder() -> tempfile.TemporaryDirectory[str]:
     """Temporary folder in which the commands of the pages run as printed."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        (folder / "examples").symlink_to(RIGS.parent)
-        shutil.copy(DOCS / "my-rig.toml", folder)
-        yield folder
+    folder = tempfile.TemporaryDirectory()
+    (Path(folder.name) / "examples").symlink_to(RIGS.parent)
+    shutil.copy(DOCS / "my-rig.toml", folder.name)
+    return folder
 
 
 def fill(app: Sphinx, docname: str, source: list[str]) -> None:

@@ -116,7 +116,7 @@ def test_runs_are_compared_once_each_with_caveats_table_and_chart(places: Places
     text, table = found["blocks"]
     assert text == {"kind": "text", "text": "1 levels of 2 runs"}
     assert (table["kind"], table["heads"][0], table["rows"][0][0]) == ("table", "run", "0715")
-    assert found["table"].splitlines()[1] == "0715,3,0.02,20,22000,1.5,0.1,0.5,0.05"
+    assert found["table"].splitlines()[1] == "0715,3,0.02,20,22000,1.5,0.5"
     (chart,) = found["charts"]
     assert (chart["name"], found["name"]) == ("compared-runs", "compared-runs.csv")
     assert chart["chart"]["panels"]

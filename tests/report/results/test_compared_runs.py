@@ -49,6 +49,8 @@ def test_a_level_has_its_uncertainty_beside_it_and_a_dash_for_what_is_not_known(
 
 def test_the_table_as_text_ends_every_row_with_one_line_feed() -> None:
     assert levels_csv([["a", "b, c"], ["1", ""]]) == 'a,"b, c"\n1,\n'
+    rows = [["source", "friction_force [N]", "friction_force_uncertainty [N]"], ["/runs/0715", "1.5", "0.1"]]
+    assert levels_csv(rows) == "source,friction_force [N]\n0715,1.5\n"
 
 
 def test_the_chart_has_a_marker_for_each_run_at_known_voltages_and_bars_of_two_uncertainties() -> None:

@@ -3,12 +3,13 @@
 import csv
 import io
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 
 from sonolube.charts import Axis, Chart, Points, one_panel
-from sonolube.measurement.run_columns import DIRECTION_COLUMN, DIRECTION_WORDS, TEXT_NAMES
+from sonolube.measurement.run_columns import DIRECTION_COLUMN, DIRECTION_WORDS, SOURCE, TEXT_NAMES
 from sonolube.report.blocks import Table
 from sonolube.text.units import format_si
 
@@ -56,9 +57,17 @@ def _row(level: dict[str, Any]) -> list[str]:
 
 
 def levels_csv(rows: Sequence[Sequence[str]]) -> str:
-    """Table of runs as CSV, as `fit` and `predict` read it."""
+    """Table of runs as CSV, as `fit` and `predict` read it, with the names of the records alone.
+
+    The standard error of a level within one test is left out: friction of another test differs by more, and a
+    prediction would take it for all of the uncertainty.
+    """
+    kept = [place for place, heading in enumerate(rows[0]) if "_uncertainty" not in heading]
+    records = [place for place, heading in enumerate(rows[0]) if heading == SOURCE]
     out = io.StringIO()
-    csv.writer(out, lineterminator="\n").writerows(rows)
+    writer = csv.writer(out, lineterminator="\n")
+    for row in rows:
+        writer.writerow([Path(row[place]).name if place in records else row[place] for place in kept])
     return out.getvalue()
 
 

@@ -1,18 +1,17 @@
 """Task `runs`: the table of own runs as one sees it, with rows added, changed, left out, undone and saved."""
 
-import csv
-import io
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, Final, TypeAlias
 
 from sonolube.errors import InvalidInput
+from sonolube.laboratory.records.run import run_folders
 from sonolube.laboratory.records.run_folder import is_run_folder
 from sonolube.measurement.file_kind import file_kind
 from sonolube.measurement.measured_runs import read_runs
 from sonolube.measurement.recordings.reader import recipes_first_in
-from sonolube.measurement.run_columns import SOURCE, SWITCH, TEXT_NAMES
+from sonolube.measurement.run_columns import SWITCH, TEXT_NAMES
 from sonolube.measurement.run_sheet import (
     RunSheet,
     joined,
@@ -25,6 +24,7 @@ from sonolube.measurement.run_sheet import (
 )
 from sonolube.measurement.run_sheet_file import SheetFile, state_of_file, store_sheet, stored_sheet
 from sonolube.report.measured.further_use import result_run_rows
+from sonolube.report.results.compared_runs import levels_csv
 from sonolube.rig.file.rig_folder import INSTRUMENTS, RIG_FILE, RUNS_FILE
 from sonolube.tasks.answer import Answer, Block, Dataset, Table, answer
 from sonolube.tasks.boundary import runs_argument
@@ -64,7 +64,7 @@ def runs(
     *,
     add: Annotated[
         Sequence[InputFile],
-        File("Table of runs, recording of friction, or folder of a recorded run to add; may come again.", "FILE"),
+        File("Table of runs, recording of friction, or recorded run or folder of them to add; may come again.", "FILE"),
     ] = (),
     mapping: MappedRuns = None,
     voltage: Annotated[
@@ -328,7 +328,7 @@ def _rows_of(source: Any, mapping: InputFile | None, conditions: Mapping[str, fl
         return _of_dataset(catalogued_runs(str(given)))
     path = file_path(given)
     if path.is_dir():
-        return _recorded(path) if is_run_folder(path) else read_sheet(path / RUNS_FILE)
+        return _of_folder(path)
     is_table = isinstance(given, NamedBytes) and given.name == "runs"  # given as one, without a name of its own
     kind = "runs" if is_table else file_kind(path)
     if kind == "recording":
@@ -346,18 +346,23 @@ def _measured(found: Mapping[str, Any], conditions: Mapping[str, float]) -> RunS
     return sheet_of_rows(rows)
 
 
-def _recorded(folder: Path) -> RunSheet:
-    """Runs of a recorded run of the laboratory, one for each level of its voltage, their source its name."""
+def _of_folder(folder: Path) -> RunSheet:
+    """Runs of a recorded run, of the folder of a rig, or of all recorded runs in a folder."""
+    if is_run_folder(folder):
+        return _recorded(folder, [folder])
+    if (folder / RIG_FILE).is_file():
+        return read_sheet(folder / RUNS_FILE)
+    return _recorded(folder, run_folders(folder))
+
+
+def _recorded(place: Path, folders: Sequence[Path]) -> RunSheet:
+    """Runs of recorded runs of the laboratory, one for each level of their voltage, their source the record's name."""
     from sonolube.laboratory.catalogue import level_rows
 
-    (head, *rows), left_out = level_rows([folder])
-    if not rows:
-        raise InvalidInput(left_out[-1] if left_out else f"{folder}: has no level of friction")
-    place, text = head.index(SOURCE), io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows(
-        [head, *([*row[:place], folder.name, *row[place + 1 :]] for row in rows)]
-    )
-    return read_sheet(file_path(NamedBytes("record.csv", text.getvalue().encode())))
+    rows, left_out = level_rows(folders)
+    if len(rows) == 1:
+        raise InvalidInput(left_out[-1] if left_out else f"{place}: has no recorded run")
+    return read_sheet(file_path(NamedBytes("record.csv", levels_csv(rows).encode())))
 
 
 def _of_dataset(dataset: Dataset) -> RunSheet:
