@@ -70,6 +70,31 @@ def test_without_the_right_cookie_nothing_is_shown(cookie: str) -> None:
     assert ask("/static/app.css", cookie=cookie).status == 401
 
 
+def test_the_key_of_the_opened_page_lets_in_once_by_a_page_that_leads_on() -> None:
+    sent: list[MutableMapping[str, Any]] = []
+
+    async def receive() -> MutableMapping[str, Any]:
+        return {"type": "http.request", "body": b""}
+
+    async def send(message: MutableMapping[str, Any]) -> None:
+        sent.append(message)
+
+    guard = Guard(application, Access(token=TOKEN, key="k" * 43, port=8765))
+    host = [(b"host", b"127.0.0.1:8765")]
+    for key in ("wrong", "k" * 43, "k" * 43, ""):
+        scope = {"type": "http", "path": "/", "method": "GET", "query_string": f"key={key}".encode(), "headers": host}
+        asyncio.run(guard(scope, receive, send))
+    starts = [message for message in sent if message["type"] == "http.response.start"]
+    assert [message["status"] for message in starts] == [401, 200, 401, 401]
+    let_in = dict(starts[1]["headers"])
+    assert let_in[b"set-cookie"].decode().partition(";")[0] == COOKIE
+    assert b"url=./" in sent[3]["body"]
+
+
+def test_a_refused_connection_is_closed() -> None:
+    assert ask("/api/jobs").headers["connection"] == "close"
+
+
 def test_a_token_opens_the_first_page_only() -> None:
     assert ask("/api/jobs", query=f"token={TOKEN}").status == 401
 

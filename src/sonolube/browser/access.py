@@ -30,6 +30,9 @@ _REFUSED: Final[Mapping[int, str]] = {
     403: "This request does not come from a page of this workbench.",
     421: "This name is not one of this workbench; open it by the link that it printed.",
 }
+_ONWARD: Final = (
+    b'<!doctype html><meta charset="utf-8"><meta http-equiv="refresh" content="0; url=./"><title>sonolube</title>'
+)
 _SAFE: Final = ("GET", "HEAD")
 _OPEN: Final = frozenset({"/static/link.css", "/static/link.js", "/static/icon.svg"})
 """Files of the page that asks for the link."""
@@ -45,12 +48,15 @@ class Access:
         In the link that is printed.
     port : int
         In the name of the cookie, so that several workbenches on one host do not log each other out.
+    key : str
+        In the link by which the browser is opened, which lets in once; empty for none.
     hosts : frozenset of str
         Names of hosts beyond those of this computer, such as that of a proxy.
     """
 
     token: str
     port: int
+    key: str = ""
     hosts: frozenset[str] = field(default_factory=frozenset)
 
     @property
@@ -80,7 +86,7 @@ class Guard:
     """
 
     def __init__(self, application: Asgi, access: Access) -> None:
-        self._application, self._access = application, access
+        self._application, self._access, self._key = application, access, access.key
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer one request."""
@@ -92,8 +98,10 @@ class Guard:
         guarded = _with_headers(send, is_stated=headers.get("x-status") == "in-header")
         if not self._access.knows_host(headers.get("host", "")):
             await _refuse(guarded, 421)
-        elif token := _token_of(scope):
-            await self._admit(guarded, token)
+        elif token := _stated(scope, "token"):
+            await self._admit(guarded, hmac.compare_digest(token.encode(), self._access.token.encode()))
+        elif key := _stated(scope, "key"):
+            await self._admit_once(guarded, key)
         elif not self._has_cookie(headers.get("cookie", "")) and not _is_open(scope):
             await _refuse(guarded, 401, is_page=scope["path"] == "/")
         elif scope["method"] not in _SAFE and not _is_own_page(headers):
@@ -101,15 +109,33 @@ class Guard:
         else:
             await self._application(scope, receive, guarded)
 
-    async def _admit(self, send: Send, token: str) -> None:
+    async def _admit(self, send: Send, is_right: bool) -> None:
         """Exchange the token of a link for a cookie; the page is then read again without it."""
-        if not hmac.compare_digest(token.encode(), self._access.token.encode()):
+        if not is_right:
             await _refuse(send, 401, is_page=True)
             return
-        cookie = f"{self._access.cookie}={self._access.secret}; HttpOnly; SameSite=Strict; Path=/"
-        headers = [(b"location", b"./"), (b"set-cookie", cookie.encode()), (b"content-length", b"0")]
+        headers = [(b"location", b"./"), (b"set-cookie", self._set_cookie()), (b"content-length", b"0")]
         await send({"type": "http.response.start", "status": 303, "headers": headers})
         await send({"type": "http.response.body", "body": b""})
+
+    async def _admit_once(self, send: Send, key: str) -> None:
+        """Exchange the key for a cookie, the first time.
+
+        A page of this workbench leads on: behind a redirect of a file a browser would keep the cookie back.
+        """
+        if not self._key or not hmac.compare_digest(key.encode(), self._key.encode()):
+            await _refuse(send, 401, is_page=True)
+            return
+        self._key = ""
+        kind = (b"content-type", b"text/html; charset=utf-8")
+        length = (b"content-length", str(len(_ONWARD)).encode())
+        headers = [kind, length, (b"set-cookie", self._set_cookie()), (b"cache-control", b"no-store")]
+        await send({"type": "http.response.start", "status": 200, "headers": headers})
+        await send({"type": "http.response.body", "body": _ONWARD})
+
+    def _set_cookie(self) -> bytes:
+        """Cookie that lets in."""
+        return f"{self._access.cookie}={self._access.secret}; HttpOnly; SameSite=Strict; Path=/".encode()
 
     def _has_cookie(self, header: str) -> bool:
         """Whether a Cookie header has the secret of this workbench."""
@@ -123,12 +149,12 @@ def _is_open(scope: Scope) -> bool:
     return scope["method"] in _SAFE and scope["path"] in _OPEN
 
 
-def _token_of(scope: Scope) -> str:
-    """Token in the query of the first page; empty where there is none."""
+def _stated(scope: Scope, name: str) -> str:
+    """Value in the query of the first page; empty where there is none."""
     if scope["path"] != "/" or scope["method"] != "GET":
         return ""
     query: str = scope["query_string"].decode("latin-1")
-    return parse_qs(query).get("token", [""])[0]
+    return parse_qs(query).get(name, [""])[0]
 
 
 def _is_own_page(headers: Mapping[str, str]) -> bool:
@@ -171,7 +197,7 @@ async def _refuse(send: Send, status: int, *, is_page: bool = False) -> None:
         {
             "type": "http.response.start",
             "status": status,
-            "headers": [(b"content-type", kind), (b"content-length", length)],
+            "headers": [(b"content-type", kind), (b"content-length", length), (b"connection", b"close")],
         }
     )
     await send({"type": "http.response.body", "body": body})

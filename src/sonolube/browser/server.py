@@ -14,6 +14,7 @@ from typing import Any, Final
 import uvicorn
 
 from sonolube.browser.access import Access, Guard
+from sonolube.browser.connections import BoundedProtocol
 from sonolube.browser.jobs import Jobs, jobs_folder
 from sonolube.browser.requests import OPENED
 from sonolube.browser.routes import Workbench
@@ -21,6 +22,7 @@ from sonolube.browser.uploads import Uploads
 from sonolube.browser.worker import Pool
 from sonolube.errors import InvalidInput
 from sonolube.rig.file.rig_folder import RECORDS
+from sonolube.storage.files import user_state_folder, write_atomically
 
 _HEAD_START: Final = 0.35  # seconds of the first page in the browser before the first worker
 
@@ -28,9 +30,9 @@ _HEAD_START: Final = 0.35  # seconds of the first page in the browser before the
 class _Server(uvicorn.Server):
     """Server that prints the link once it listens, and starts the first worker a moment later."""
 
-    def __init__(self, config: uvicorn.Config, *, link: str, opens_browser: bool, pool: Pool) -> None:
+    def __init__(self, config: uvicorn.Config, *, link: str, opened: Path | None, pool: Pool) -> None:
         super().__init__(config)
-        self._link, self._opens, self._pool = link, opens_browser, pool
+        self._link, self._opened, self._pool = link, opened, pool
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         """Listen, and print the link."""
@@ -38,8 +40,8 @@ class _Server(uvicorn.Server):
         sys.stdout.write(f"The workbench is at {self._link}\nCtrl-C ends it.\n")
         sys.stdout.flush()
         asyncio.get_running_loop().call_later(_HEAD_START, self._pool.start)
-        if self._opens:
-            webbrowser.open(self._link)
+        if self._opened is not None:
+            webbrowser.open(self._opened.as_uri())
 
 
 def run(
@@ -80,9 +82,12 @@ def run(
     """
     listening = _listening(host, port)
     port = listening.getsockname()[1]
-    access = Access(token=token or secrets.token_urlsafe(32), port=port, hosts=frozenset(hosts))
+    access = Access(
+        token=token or secrets.token_urlsafe(32), key=secrets.token_urlsafe(32), port=port, hosts=frozenset(hosts)
+    )
     name = f"[{host}]" if ":" in host else host
     link = f"http://{name}:{port}/?token={access.token}"
+    opened = _page_that_opens(f"http://{name}:{port}/?key={access.key}", port) if opens_browser else None
     workbench = _workbench(rig, device_map, runs)
     signal.signal(signal.SIGTERM, _leave)  # the server raises it again once it has shut down
     try:
@@ -96,19 +101,31 @@ def run(
                 timeout_keep_alive=30,
                 timeout_graceful_shutdown=2,  # of what never ends by itself, such as the frames of a run
                 limit_concurrency=2000,
+                http=BoundedProtocol,
                 h11_max_incomplete_event_size=64 * 1024,
             ),
             link=link,
-            opens_browser=opens_browser,
+            opened=opened,
             pool=workbench.pool,
         )
         server.run(sockets=[listening])
     finally:
+        if opened is not None:
+            opened.unlink(missing_ok=True)
         workbench.pool.end()
         workbench.jobs.end()
         workbench.uploads.end()
         if goes_on := workbench.laboratory.end():
             sys.stdout.write(f"A run goes on without the workbench. It can be stopped at {goes_on}\n")
+
+
+def _page_that_opens(link: str, port: int) -> Path:
+    """File, readable by its owner alone, that leads a browser to a link: that of a command others can read."""
+    onward = f'<meta http-equiv="refresh" content="0; url={link}">'
+    page = f'<!doctype html><meta charset="utf-8">{onward}<title>sonolube</title>'
+    path = user_state_folder() / f"open-{port}.html"
+    path.unlink(missing_ok=True)
+    return write_atomically(path, page, is_private=True)
 
 
 def _leave(number: int, frame: object) -> None:
