@@ -277,3 +277,16 @@ def test_a_folder_is_made_whole_and_never_in_place_of_another(desk: Path, capsys
     answer = json.loads(capsys.readouterr().out)
     assert {Path(each).parent for each in answer["files"]} == {Path("bench/answers")}
     assert {each.name for each in desk.iterdir()} == {"bench"}
+
+
+@pytest.mark.parametrize(
+    ("pin", "following"), [("ptfe", "friction"), ("polyethylene", "friction"), ("brass", "predict")]
+)
+def test_the_next_command_of_a_new_rig_works(
+    pin: str, following: str, sonolube: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    known = ("--disc", "steel", "--load", "5N", "--speed", "0.2m/s", "--frequency", "20kHz", "--amplitude", "3um")
+    out = sonolube("new", "rig.toml", "--pin", pin, *known).out
+    assert f"next: sonolube {following} rig.toml" in out
+    assert sonolube(following, "rig.toml").code == 0

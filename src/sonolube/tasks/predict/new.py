@@ -8,6 +8,7 @@ from sonolube.errors import InvalidInput
 from sonolube.facts.materials import material
 from sonolube.measurement.run_sheet_file import EMPTY_TABLE
 from sonolube.operating_system import quoted
+from sonolube.prediction.applicability import applicability
 from sonolube.rig import Rig
 from sonolube.rig.file.rig_folder import folder_contents
 from sonolube.rig.new_rig.pin_and_vibration import KnownSurface
@@ -204,7 +205,7 @@ class NewRig(Answer):
         """Title, the inputs known least with how to measure them, and the next command."""
         heads = ("least known", "distribution", "to measure it")
         rows = [(one.key, one.text, one.remedy) for one in self.least_known]
-        following = "friction" if self.rig.friction_model.for_soft_bodies else "predict"
+        following = "friction" if applicability(self.rig).refusal else "predict"
         command = [] if self.target is None else [Verbatim(f"  next: sonolube {following} {quoted(str(self.target))}")]
         return [self.rig.title, Table(heads, rows), *command]
 
