@@ -52,6 +52,7 @@ ARGUMENTS = {  # of every command that writes: the least that it takes, in.dat b
     "compare": (INPUT,),
     "fit": (INPUT,),
     "identify rig": (INPUT,),
+    "runs": ("own.csv", "--add", INPUT),
     "identify decay-length": (INPUT,),
     "evidence plot": (INPUT,),
     "evidence learn": (INPUT,),

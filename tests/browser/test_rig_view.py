@@ -5,6 +5,7 @@ from typing import Any
 import pytest
 from pytest import approx
 
+import sonolube as sl
 from sonolube.browser.requests import Places
 from sonolube.browser.rig_view import rig_fields, rig_view
 
@@ -98,3 +99,20 @@ def test_the_view_of_a_rig_has_the_operating_point_first_and_what_its_drawing_sh
     assert {"voltage", "speed", "frequency", "power", "waveform", "load"} <= set(found["studies"])
     assert "velocity-power" in found["maps"]
     assert rig_view({"rig": {"name": "tribometer"}}, Places(rigs={"own": "own.toml"}))["rigs"][0] == "own"
+
+
+def test_a_calibration_is_one_text_and_offered_where_nothing_scales_the_amplitude() -> None:
+    known: dict[str, Any] = {"pin": "brass", "disc": "304", "load": 5.0, "speed": 0.2, "frequency": 20e3}
+    plain, scaled = (sl.new(**known, amplitude=2e-6, **more) for more in ({}, {"calibration": "25V = 2um"}))
+
+    def calibration(content: str) -> dict[str, Any]:
+        rig = {"name": "own", "text": content, "changes": {}}
+        found = rig_view({"rig": rig}, NOWHERE)["fields"]
+        (one,) = [each for each in found if each["key"] == "vibration.calibration"]
+        return dict(one)
+
+    assert calibration(plain.rig_text)["text"] == ""
+    stated = calibration(scaled.rig_text)
+    assert (stated["text"], stated["unit"], stated["lowest"]) == ("25 V = 2 um", "", None)
+    tribometer = rig_view({"rig": {"name": "tribometer", "changes": {}}}, NOWHERE)
+    assert not [each for each in tribometer["fields"] if each["key"] == "vibration.calibration"]

@@ -59,8 +59,6 @@ def _completed(given: dict[str, Any], typed: Mapping[str, Any]) -> dict[str, Any
         raise InvalidInput("--force has no meaning with --folder, which replaces nothing")
     if typed["folder"] and _place(typed).exists():
         raise InvalidInput(f"{_place(typed)}: exists; name a new folder")
-    if typed["out"].is_dir() and not typed["folder"]:
-        raise InvalidInput(f"{typed['out']}: is a folder; name a file, or a new folder with --folder")
     if not typed["folder"] and typed["out"].exists() and not typed["force"]:
         raise InvalidInput(f"{typed['out']}: exists; name another file, or give --force to replace it")
     refuse_two_of_one(given)
@@ -133,7 +131,7 @@ class _FileOrFolder(OutputFile):
 
     def expect(self, path: Path, stems: Mapping[str, str]) -> None:
         """Raise InvalidInput if the file cannot be written."""
-        if not path.is_dir():
+        if stems.get("folder") != str(True):
             expect_file(path)
 
 

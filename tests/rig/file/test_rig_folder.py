@@ -44,5 +44,5 @@ def test_modes_beside_the_file_are_those_of_the_folder(folder: Path) -> None:
 
 
 def test_a_folder_without_a_rig_file_is_refused(tmp_path: Path) -> None:
-    with raises(InvalidInput, match=r"it is a folder without rig\.toml"):
+    with raises(InvalidInput, match=r"is a folder, not a file, and without rig\.toml"):
         read_rig(tmp_path)

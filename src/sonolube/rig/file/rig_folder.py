@@ -62,7 +62,7 @@ def rig_file(path: Path) -> Path:
     if not path.is_dir():
         return path
     if not (path / RIG_FILE).is_file():
-        raise InvalidInput(f"{path}: cannot be read: it is a folder without {RIG_FILE}, and so not that of a rig")
+        raise InvalidInput(f"{path}: cannot be read: is a folder, not a file, and without {RIG_FILE} not that of a rig")
     return path / RIG_FILE
 
 
