@@ -45,11 +45,11 @@ def _on_compliant_holder(seed: int) -> dict[str, list[float]]:
     """Whether stick-slip is found, where it is and where it is not, with a holder that sticks at low speed."""
     found: dict[str, list[float]] = {key: [] for key in (*_QUANTITIES, *_STICK_SLIP)}
     for name in _SLOW:
-        parts, truth, _ = run_shortened(_rig(), name, seed=seed, disturbances=_COMPLIANCE)
+        parts, truth, diameter = run_shortened(_rig(), name, seed=seed, disturbances=_COMPLIANCE)
         for part in parts:
             recording = part.dataset()
             if (recording["sliding_speed_set"] > 0).any():
-                _add_levels(found, recording, truth)
+                _add_levels(found, recording, truth, diameter)
     return {key: found[key] for key in _STICK_SLIP}
 
 
@@ -61,7 +61,7 @@ def _scores(name: str, seed: int) -> dict[str, list[float]]:
         recording = part.dataset()
         slides = bool((recording["sliding_speed_set"] > 0).any())
         if slides and "friction_force" in recording and "displacement" not in recording:
-            _add_levels(found, recording, truth)
+            _add_levels(found, recording, truth, diameter)
         if "temperature" in recording and part.temperature is not None:
             _add_temperature(found, part, recording)
         if "magnetic_flux_density" in recording:
@@ -69,9 +69,9 @@ def _scores(name: str, seed: int) -> dict[str, list[float]]:
     return found
 
 
-def _add_levels(found: dict[str, list[float]], recording: Any, truth: Any) -> None:
+def _add_levels(found: dict[str, list[float]], recording: Any, truth: Any, diameter: float) -> None:
     """Friction and its reduction at each step, and stick-slip."""
-    steps = analyse_voltage_steps(recording)
+    steps = analyse_voltage_steps(recording, groove_diameter=diameter)
     settings = [_setting(truth, step) for step in steps]
     for step, known in zip(steps, settings, strict=True):
         if known is None or not step.friction_force_uncertainty:
@@ -215,7 +215,7 @@ STUDY = Study(
     " reduction, temperature and rotation within their uncertainties of the truth, and is stick-slip found? Studies I"
     " and II run on a compliant holder too, which sticks at 20 mm/s; stick-slip that is said to be too fast for the"
     " sampling rate does not count as missed.",
-    sources=("laboratory/virtual_tribometer/*.py", "measurement/friction/*.py"),
+    sources=("laboratory/virtual_tribometer/*.py", "measurement/friction/*.py", "measurement/statistics/*.py"),
     trials=100,
     sample=1,
     trial=_trial,

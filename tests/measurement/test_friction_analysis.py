@@ -59,7 +59,7 @@ def test_a_rotation_is_given_once_and_a_changing_speed_has_none() -> None:
     t = seconds(20)
     rotation = disc_rotation(time=np.arange(0, 20, 4 / 3), groove_diameter=0.05)
     made = steady(voltage_peak_to_peak=0 * t)
-    with raises(InvalidInput, match="give either rotation"):
+    with raises(InvalidInput, match="give one of rotation"):
         analyse_voltage_steps(made, rotation=rotation, rotation_speed=0.75)
     assert analyse_rotation_speed(made) == approx(0.75, rel=1e-3)
     assert analyse_rotation_speed(steady(voltage_peak_to_peak=0 * t, sliding_speed=0.02 + 0.02 * (t > 9))) is None
@@ -68,6 +68,22 @@ def test_a_rotation_is_given_once_and_a_changing_speed_has_none() -> None:
         assert step.friction_force == approx(1.0, abs=2e-3)
     with raises(InvalidInput, match="has no channel 'stack_voltage'"):
         analyse_voltage_steps(steady())
+
+
+def test_the_set_speed_and_the_groove_tell_the_turns_of_a_disc_whose_speed_changes() -> None:
+    t = seconds(20)
+    slow = t < 10
+    turns = np.where(slow, 0.3 * t, 3.0 + 0.8 * (t - 10))
+    speed = np.pi * 0.02 * np.where(slow, 0.3, 0.8)
+    force = np.where(slow, 1.0, 0.6) + 0.1 * np.cos(2 * np.pi * turns + 1)
+    made = steady(friction_force=force, voltage_peak_to_peak=0 * t, sliding_speed_set=speed)
+    steps = analyse_voltage_steps(made, settling_time=0.2, groove_diameter=0.02)
+    assert [step.friction_force for step in steps] == approx([1.0, 0.6], abs=1e-3)
+    with raises(InvalidInput, match="groove_diameter must be positive"):
+        analyse_voltage_steps(made, groove_diameter=0.0)
+    without = steady(voltage_peak_to_peak=0 * t)
+    (step,) = analyse_voltage_steps(without, settling_time=0.2, groove_diameter=0.02)  # found in the friction
+    assert step.friction_force == approx(1.0, abs=2e-3)
 
 
 def test_a_motor_current_is_averaged_in_windows_of_two_samples_at_least() -> None:

@@ -4,7 +4,10 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from sonolube.checks import Floats
+import numpy as np
+from scipy.integrate import cumulative_trapezoid
+
+from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput, suggestion
 from sonolube.measurement.friction.force_cycle import StickSlipEstimate
 from sonolube.measurement.friction.loops import FrictionLoops, FrictionWork, friction_loops, friction_work
@@ -32,7 +35,13 @@ from sonolube.measurement.friction.windows import (
     window_statistics,
 )
 from sonolube.measurement.friction.wobble import WobbleCorrection, remove_wobble
-from sonolube.measurement.recorded_conditions import recorded_voltage, speed_changes, speed_of_one_direction
+from sonolube.measurement.recorded_conditions import (
+    recorded_speed,
+    recorded_voltage,
+    speed_changes,
+    speed_channel,
+    speed_of_one_direction,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -173,6 +182,7 @@ def analyse_voltage_steps(
     settling_time: float = 0.5,
     rotation: DiscRotation | None = None,
     rotation_speed: float | None = None,
+    groove_diameter: float | None = None,
 ) -> tuple[VoltageStep, ...]:
     """Friction, its reduction and stick-slip at each step of the drive voltage.
 
@@ -187,30 +197,55 @@ def analyse_voltage_steps(
     rotation : DiscRotation or None
         From `analyse_rotation`, to take off the wobble of the disc.
     rotation_speed : float or None
-        Instead of it, where the speed is constant; found in the friction without both. [1/s]
+        Instead of it, where the speed is constant. [1/s]
+    groove_diameter : float or None
+        Instead of both, of the wear track: the sliding speed of a channel, or of the motor as set, tells the
+        revolutions. The rotation is found in the friction without all three, and where no channel has a speed. [m]
 
     Returns
     -------
     tuple of VoltageStep
+
+    Raises
+    ------
+    InvalidInput
+        If more than one of the last three is given, or `groove_diameter` is not positive.
 
     References
     ----------
     .. [1] D 4.1.2, figure 4.3, Table 4.2.
     """
     t = channel_values(recording, "time")
-    if rotation is not None and rotation_speed is not None:
-        raise InvalidInput("give either rotation, from the pulses, or a constant rotation_speed")
-    revolutions = None if rotation is None else revolutions_at(rotation, time=t)
+    if sum(each is not None for each in (rotation, rotation_speed, groove_diameter)) > 1:
+        raise InvalidInput("give one of rotation, from the pulses, a constant rotation_speed, and groove_diameter")
+    revolutions = None
+    if rotation is not None:
+        revolutions = revolutions_at(rotation, time=t)
+    elif rotation_speed is not None:
+        revolutions = rotation_speed * (t - t[0])
+    elif groove_diameter is not None:
+        revolutions = _slid_revolutions(recording, groove_diameter)
     return friction_at_voltage_steps(
         time=t,
         friction_force=channel_values(recording, "friction_force"),
         voltage_peak_to_peak=_voltage(recording),
         shortest_step=shortest_step,
         settling_time=settling_time,
-        revolutions=revolutions if rotation_speed is None else rotation_speed * (t - t[0]),
+        revolutions=revolutions,
         sliding_speed=speed_of_one_direction(recording),
         stated_steps=channel_values(recording, STATED_STEP) if STATED_STEP in recording else None,
     )
+
+
+def _slid_revolutions(recording: "xr.Dataset", groove_diameter: float) -> Floats | None:
+    """Revolutions made until each sample by the sliding speed; None where no channel tells it."""
+    require_positive(groove_diameter=groove_diameter)
+    name, speed = speed_channel(recording), recorded_speed(recording)
+    if speed is None or name not in ("relative_velocity", "sliding_speed", "sliding_speed_set"):
+        return None
+    t, known = channel_values(recording, "time"), np.isfinite(speed)
+    steady = np.interp(t, t[known], np.abs(speed[known]))
+    return np.asarray(cumulative_trapezoid(steady, t, initial=0.0) / (np.pi * groove_diameter))
 
 
 def analyse_rotation_speed(recording: "xr.Dataset") -> float | None:

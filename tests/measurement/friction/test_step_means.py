@@ -10,15 +10,14 @@ from sonolube.measurement.friction.force_cycle import StickSlipBurst, StickSlipE
 from sonolube.measurement.friction.step_means import (
     SampledParts,
     _burst_columns,
-    _drift_columns,
     _fixed_columns,
-    _significant,
+    _trend_columns,
+    _trends,
     mean_of_parts,
     sampled_parts,
     without_wobble,
     wobble_columns,
 )
-from sonolube.measurement.statistics.autocorrelation import CorrelatedRegression
 
 TIME = np.arange(0.0, 24.4, 2e-3)
 PARTS = [slice(*np.searchsorted(TIME, ends)) for ends in ((1.0, 12.4), (13.0, 16.4), (17.0, 20.4), (21.0, 24.4))]
@@ -186,33 +185,57 @@ def test_levels_waves_teeth_and_shifts_stand_side_by_side() -> None:
     assert _fixed_columns(parts, None, own)[0][1].tolist() == [[0, 1, 0, 4, 5]] * 3
 
 
-def test_run_in_has_the_time_constant_that_explains_the_force_best() -> None:
+def test_run_in_is_offered_in_proportion_to_the_level_for_time_constants_up_to_the_first_part() -> None:
     times = [2 + np.arange(0, 500) * 0.02, 14 + np.arange(0, 200) * 0.02]
-    onset, constant = 1.5, 2.2
-    values = [3 - 0.4 * np.exp(-(t - onset) / constant) for t in times]
-    fixed = [np.tile(np.eye(2)[j], (t.size, 1)) for j, t in enumerate(times)]
-    columns = _drift_columns(parts_of(times, values), values, fixed, onset)
+    values = [np.full(500, 2.0), np.full(200, -0.5)]
+    columns = _trend_columns(parts_of(times, values), values, 1.5)
     first, last = times[0][0], times[1][-1]
     assert columns[0][0, 0] == approx(-0.5)
     assert columns[1][-1, 0] == approx(0.5)
     assert columns[1][10, 0] == approx((times[1][10] - (first + last) / 2) / (last - first))
-    for t, column in zip(times, columns, strict=True):
-        assert column[:, 1] == approx(np.exp(-(t - onset) / constant), rel=1e-2)
-        assert column[:, 2] == approx(-column[:, 1] * np.log(column[:, 1]), rel=1e-6)  # x exp(-x)
+    span = times[0][-1] - 1.5
+    for t, column, share in zip(times, columns, (1.0, -0.25), strict=True):
+        assert column[:, 1] == approx(share * np.exp(-(t - 1.5) / (0.05 * span)))
+        assert column[:, 12] == approx(share * np.exp(-(t - 1.5) / span))
+        assert column[:, 24] == approx(share * (t - 1.5) / span * np.exp(-(t - 1.5) / span))  # by ln tau
 
 
-def test_coefficients_are_kept_from_three_and_a_half_standard_errors_on() -> None:
-    def fit(*coefficients: float) -> CorrelatedRegression:
-        return CorrelatedRegression(
-            coefficients=np.array([9.0, *coefficients]),
-            covariance=np.diag([1.0, 4.0, 0.25])[: len(coefficients) + 1, : len(coefficients) + 1],
-            autoregression=0.0,
-            moving_average=0.0,
-            innovations=(),
+def test_the_chances_of_run_in_and_drift_add_up() -> None:
+    found = _trends(2.0)
+    assert sum(each.probability for each in found) == approx(1.0)
+    assert sum(each.probability for each in found if len(each.columns) > 1) == approx(0.5)
+    assert sum(each.probability for each in found if 0 in each.columns) == approx(0.1)
+    assert {each.deviations[0] for each in found if each.columns == (0,)} == {0.02, 0.2}
+
+
+def settling(seed: int, share: float) -> tuple[float, float]:
+    """Deviation of the mean of a part that settles, and its standard error; drawn as an AR(1) process by hand."""
+    rng = np.random.default_rng(seed)
+    t, noise = 0.5 + 0.02 * np.arange(500), np.zeros(500)
+    for number in range(1, 500):
+        noise[number] = 0.6 * noise[number - 1] + 0.01 * rng.standard_normal()
+    force = 1 + share * rng.standard_normal() * np.exp(-t / (10 * rng.uniform(0.1, 0.9))) + noise
+    found = mean_of_parts(parts_of([t], [force]), waves=None, stick_slip=[NONE], onset=0.0)
+    return float(found.friction_force[0]) - 1.0, float(np.sqrt(found.covariance[0, 0]))
+
+
+@pytest.mark.parametrize("share", [0.0, 0.03, 0.1])
+def test_a_mean_errs_as_its_standard_error_states_with_a_run_in_that_may_not_stand_out(share: float) -> None:
+    found = np.array([settling(seed, share) for seed in range(24)])
+    z = found[:, 0] / found[:, 1]
+    assert 0.55 < np.sqrt(np.mean(z**2)) < 1.4  # of 24 standard normal numbers in 99.8 % of cases: 0.58 to 1.45
+    assert np.mean(np.abs(z) < 1.96) > 0.8  # 0.95 in the mean; 19 of 24 or fewer in 0.6 % of cases
+
+
+def test_a_run_in_that_cannot_be_excluded_widens_the_standard_error_of_a_short_part_alone() -> None:
+    short, long = (
+        mean_of_parts(
+            parts_of([t], [1 + 0.01 * np.random.default_rng(6).standard_normal(t.size)]),
+            waves=None,
+            stick_slip=[NONE],
+            onset=t[0] - 0.1,
         )
-
-    assert _significant(fit(7.1), slice(1, 2))
-    assert not _significant(fit(-6.9), slice(1, 2))
-    # two at once: their squares must exceed 12.25 + 2
-    assert _significant(fit(6.0, 1.2), slice(1, None))  # 9 + 5.76
-    assert not _significant(fit(6.0, 1.1), slice(1, None))  # 9 + 4.84
+        for t in (np.arange(0, 100) * 0.02, np.arange(0, 4000) * 0.02)
+    )
+    assert np.sqrt(short.covariance[0, 0]) > 1.3 * 0.01 / np.sqrt(100)
+    assert np.sqrt(long.covariance[0, 0]) < 1.6 * 0.01 / np.sqrt(4000)

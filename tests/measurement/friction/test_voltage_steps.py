@@ -252,7 +252,8 @@ def test_a_step_states_its_span_deviation_and_speed() -> None:
     )
     assert (step.start_time, step.end_time) == approx((0.0, 19.9975))
     assert step.friction_force_deviation == approx(np.std(force[800:-80], ddof=1), rel=1e-3)
-    assert step.friction_force_uncertainty == approx(0.05 / np.sqrt(7120), rel=0.4)
+    independent = 0.05 / np.sqrt(7120)
+    assert 0.8 * independent < step.friction_force_uncertainty < 5 * independent  # one part may settle, unseen
     assert (step.sliding_speed, step.force_zero, step.friction_reduction) == (approx(0.03), 0.0, None)
     with raises(InvalidInput, match="equal in length"):
         friction_at_voltage_steps(time=t, friction_force=force, voltage_peak_to_peak=0 * t, revolutions=t[:9])

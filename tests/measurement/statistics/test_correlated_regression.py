@@ -9,8 +9,8 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.statistics.autocorrelation import (
     _noise,
     _restricted_likelihood,
-    _whitened,
     correlated_regression,
+    whitened,
 )
 
 
@@ -77,19 +77,19 @@ def test_whitening_and_restricted_likelihood_are_those_of_the_covariance_matrix(
         parameters = np.array([logit(phi / 0.9995), logit(theta / phi)])
         assert _noise(parameters) == approx((phi, theta))
         likelihoods.append(_restricted_likelihood(stacked, parameters))
-        white = np.concatenate([_whitened(part, phi, theta) for part in stacked])
+        white = np.concatenate([whitened(part, phi, theta) for part in stacked])
         assert white[:, 1:].T @ white[:, 1:] == approx(information)
     assert np.array(likelihoods) - expected == approx(likelihoods[0] - expected[0])  # a constant of the data
 
 
-def test_white_and_red_noise_is_whitened_by_its_recursion_from_the_expected_first_innovation() -> None:
+def test_white_and_red_noise_iswhitened_by_its_recursion_from_the_expected_first_innovation() -> None:
     phi, theta = 0.8, 0.5
     variance = float(arma_covariance(1, phi, theta)[0, 0])
     x = np.array([2.0, -1.0, 0.5, 3.0])
     white = [x[0] / np.sqrt(variance), x[1] - phi * x[0] + theta * x[0] / variance]
     for at in (2, 3):
         white.append(x[at] - phi * x[at - 1] + theta * white[-1])
-    assert _whitened(x[:, np.newaxis], phi, theta)[:, 0] == approx(white)
+    assert whitened(x[:, np.newaxis], phi, theta)[:, 0] == approx(white)
 
 
 def test_a_fit_of_fewer_values_than_columns_is_refused_and_parts_stay_apart() -> None:

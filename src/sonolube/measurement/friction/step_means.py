@@ -4,18 +4,21 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from sonolube.checks import Floats
 from sonolube.measurement.friction.force_cycle import StickSlipEstimate
 from sonolube.measurement.friction.wobble import find_rotation_speed, harmonic_columns, refined_speed, scaled_waves
-from sonolube.measurement.statistics.autocorrelation import CorrelatedRegression, correlated_regression
+from sonolube.measurement.statistics.autocorrelation import correlated_regression
+from sonolube.measurement.statistics.averaged_regression import Alternative, averaged_regression
 
 _BLOCK = 0.016  # s, over which samples are averaged
 _BLOCKS_OF_SHORTEST = 40
 _MAX_BLOCKS = 20_000
-_RUN_IN_TIMES = 8  # time constants that are tried
-_SIGNIFICANT = 3.5  # standard errors from which run-in or drift is kept
+_RUN_INS = tuple(range(1, 13))  # columns of run-in, each with a time constant; after them their changes with it
+_CONSTANTS = 0.05, 1.0  # least and greatest of these, over the time until the end of the first part
+_RUN_IN = 0.1  # standard deviation of the prior of a run-in, over the level
+_DRIFT = 0.01, 0.1  # standard deviations of that of a drift over the recording, likewise
+_RUNS_IN, _DRIFTS = 0.5, 0.1  # probabilities that there is one
 _MIN_SHARE = 0.05  # of a part within or without bursts, from which their shift of the level is fitted
 _UNEVEN = 1.5  # ratio of the noise between parts from which they are weighted
 
@@ -173,48 +176,48 @@ def mean_of_parts(
     -----
     The averages over blocks of 16 ms are fitted by
 
-    .. math:: F = \mu_j + \sum_k (a_k \cos k\theta + b_k \sin k\theta) + c\,e^{-(t - t_0)/\tau} + d\,t + s_j(t) ,
+    .. math:: F = \mu_j \left(1 + c\,e^{-(t - t_0)/\tau}\right) + d\,t
+        + \sum_k (a_k \cos k\theta + b_k \sin k\theta) + s_j(t) ,
 
     with a level for each part j, the harmonics of the rotation (of one amplitude, or in proportion to the level, as
-    fits better), run-in and drift where they exceed 3.5 standard errors,
-    and the sawteeth :math:`s_j` of the bursts of stick-slip with their shift of the level. The mean of a part is its
-    level with drift and with the share of the bursts' shifts, without run-in and wobble. Its standard error is from
-    `correlated_regression` of what remains, weighted where the noise differs between parts.
+    fits better), and the sawteeth :math:`s_j` of the bursts of stick-slip with their shift of the level. The mean of a
+    part is its level with drift and with the share of the bursts' shifts, without run-in and wobble.
+
+    Whether there is a run-in or a drift is not decided but weighed, by `averaged_regression`: a threshold would leave a
+    run-in just below it in the mean, and its uncertainty out. Before the force is seen, there is a run-in with one
+    chance in two, c being normal with a standard deviation of 0.1, as friction changes in running in [1]_, and ln tau
+    even from a twentieth to the whole of the time until the end of the first part; a drift with one chance in ten, with
+    a standard deviation over the recording of 0.01 or 0.1 of the level. A slower run-in is part of the mean. Between
+    two time constants of the grid the run-in is linear in ln tau. Noise is weighted where it differs between parts.
+
+    References
+    ----------
+    .. [1] P. J. Blau, Tribol. Int. 38, 1007 (2005). doi:10.1016/j.triboint.2005.07.020; D Table 2.3.
     """
     values = parts.averaged(parts.forces)
     nuisances = [_burst_columns(t, estimate) for t, estimate in zip(parts.times, stick_slip, strict=True)]
     fixed, shifts = _fixed_columns(parts, waves, nuisances)
-    drift = _drift_columns(parts, values, fixed, onset)
-    fit = _fitted(values, fixed, drift)
-    scale = np.array([np.sqrt(np.mean(e**2)) for e in fit.innovations])
+    trends = _trend_columns(parts, values, onset)
+    weights = 1 / _noise_scale(values, fixed, trends)
     levels, count = len(values), fixed[0].shape[1]
-    kept = np.repeat([_significant(fit, slice(count, count + 1)), _significant(fit, slice(count + 1, None))], [1, 2])
-    uneven = bool(scale.max() > _UNEVEN * scale.min() > 0)
-    if not kept.all() or uneven:
-        drift = [columns[:, kept] for columns in drift]
-        fit = _fitted(values, fixed, drift, scale if uneven else None)
-    contrast = np.zeros((levels, fit.coefficients.size))
-    contrast[:, :levels] = np.eye(levels)
-    for j in range(levels):
-        contrast[j, count - shifts : count] = fixed[j][:, count - shifts :].mean(axis=0)
-        if kept[0]:  # the drift; the run-in after it is left out
-            contrast[j, count] = drift[j][:, 0].mean()
-    return StepMeans(friction_force=contrast @ fit.coefficients, covariance=contrast @ fit.covariance @ contrast.T)
+    wanted = np.zeros((levels, count + trends[0].shape[1]))
+    wanted[:, :levels] = np.eye(levels)
+    wanted[:, count - shifts : count] = [columns[:, count - shifts :].mean(axis=0) for columns in fixed]
+    wanted[:, count] = [columns[:, 0].mean() for columns in trends]  # the drift; run-in is left out
+    found = averaged_regression(
+        *([w * part for w, part in zip(weights, each, strict=True)] for each in (values, fixed)),
+        offered=[w * part for w, part in zip(weights, trends, strict=True)],
+        alternatives=_trends(float(max(abs(y.mean()) for y in values))),
+        beside=((), (0,), _RUN_INS, (0, *_RUN_INS)),
+        functions=wanted,
+    )
+    return StepMeans(friction_force=found.means, covariance=found.covariance)
 
 
 def _block_means(column: Floats, size: int) -> Floats:
     """Averages over blocks of samples."""
     blocks = column.shape[0] // size
     return np.asarray(column[: blocks * size].reshape(blocks, size, *column.shape[1:]).mean(axis=1))
-
-
-def _fitted(
-    values: Sequence[Floats], fixed: Sequence[Floats], drift: Sequence[Floats], scale: Floats | None = None
-) -> CorrelatedRegression:
-    """Regression on all columns, each part over the scale of its noise."""
-    weights = np.ones(len(values)) if scale is None else 1 / scale
-    designs = [w * np.concatenate([a, b], axis=1) for w, a, b in zip(weights, fixed, drift, strict=True)]
-    return correlated_regression([w * y for w, y in zip(weights, values, strict=True)], designs)
 
 
 def _fixed_columns(
@@ -260,34 +263,43 @@ def _burst_columns(t: Floats, stick_slip: StickSlipEstimate) -> tuple[Floats, Fl
     return np.reshape(teeth, (-1, t.size)).T, np.reshape(shift, (-1, t.size)).T
 
 
-def _drift_columns(
-    parts: SampledParts, values: Sequence[Floats], fixed: Sequence[Floats], onset: float
-) -> list[Floats]:
-    """Averaged columns of linear drift, of the run-in that fits best, and of its change by time constant."""
+def _trend_columns(parts: SampledParts, values: Sequence[Floats], onset: float) -> list[Floats]:
+    """Averaged columns of drift, of run-in in proportion to the level by time constant, and of its change with that."""
     times = parts.averaged(parts.times)
     first, last = times[0][0], times[-1][-1]
-    linear = [(t - (first + last) / 2) / (last - first) for t in times]
-    shortest, longest = np.log(0.1 * (times[0][-1] - onset)), np.log(0.5 * (times[0][-1] - onset))
-    basis, _ = np.linalg.qr(np.column_stack([np.concatenate(fixed), np.concatenate(linear)]))
-    whole, y = np.concatenate(times) - onset, np.concatenate(values)
-    y = y - basis @ (basis.T @ y)
-
-    def explained(logarithm: float) -> float:
-        """Minus the power that a run-in of a time constant explains."""
-        x = np.exp(-whole / np.exp(logarithm))
-        x = x - basis @ (basis.T @ x)
-        return -(float(x @ y) ** 2) / max(float(x @ x), 1e-300)
-
-    step = (longest - shortest) / (_RUN_IN_TIMES - 1)
-    near = min(np.linspace(shortest, longest, _RUN_IN_TIMES), key=explained)
-    bounds = max(shortest, near - step), min(longest, near + step)
-    constant = float(np.exp(minimize_scalar(explained, bounds=bounds, method="bounded").x))
-    run_in = [np.exp(-(t - onset) / constant) for t in times]
-    change = [(t - onset) / constant * decay for t, decay in zip(times, run_in, strict=True)]
-    return [np.column_stack(columns) for columns in zip(linear, run_in, change, strict=True)]
+    constants = np.geomspace(*_CONSTANTS, len(_RUN_INS)) * (times[0][-1] - onset)
+    levels = np.array([y.mean() for y in values])
+    shares = levels / max(np.abs(levels).max(), 1e-300)
+    found = []
+    for t, share in zip(times, shares, strict=True):
+        since = (t[:, np.newaxis] - onset) / constants
+        run_in = share * np.exp(-since)
+        found.append(np.column_stack([(t - (first + last) / 2) / (last - first), run_in, since * run_in]))
+    return found
 
 
-def _significant(fit: CorrelatedRegression, which: slice) -> bool:
-    """Whether coefficients differ from zero by more than chance."""
-    c = fit.coefficients[which]
-    return float(c @ np.linalg.solve(fit.covariance[which, which], c)) > _SIGNIFICANT**2 + 2 * (c.size - 1)
+def _noise_scale(values: Sequence[Floats], fixed: Sequence[Floats], trends: Sequence[Floats]) -> Floats:
+    """Noise of each part over that of the whole; ones where it differs little."""
+    columns = [np.column_stack([a, b[:, [0, 1 + len(_RUN_INS) // 2]]]) for a, b in zip(fixed, trends, strict=True)]
+    fit = correlated_regression(values, columns)
+    scale = np.array([np.sqrt(np.mean(e**2)) for e in fit.innovations])
+    uneven = bool(scale.max() > _UNEVEN * scale.min() > 0)
+    return np.asarray(scale / np.sqrt(np.mean(scale**2)) if uneven else np.ones(scale.size))
+
+
+def _trends(level: float) -> list[Alternative]:
+    """Nothing, drift, run-in, or both, of each size and time constant, with their probabilities."""
+    drifts = [((), (), 1 - _DRIFTS), *(((0,), (size * level,), _DRIFTS / len(_DRIFT)) for size in _DRIFT)]
+    width = np.log(_CONSTANTS[1] / _CONSTANTS[0]) / (len(_RUN_INS) - 1) / np.sqrt(12)  # within a step of the logarithm
+    run_ins = [
+        ((), (), 1 - _RUNS_IN),
+        *(
+            ((k, k + len(_RUN_INS)), (_RUN_IN * level, _RUN_IN * level * width), _RUNS_IN / len(_RUN_INS))
+            for k in _RUN_INS
+        ),
+    ]
+    return [
+        Alternative(columns=(*a, *b), deviations=(*c, *d), probability=p * q)
+        for a, c, p in drifts
+        for b, d, q in run_ins
+    ]

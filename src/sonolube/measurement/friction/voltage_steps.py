@@ -140,7 +140,7 @@ def friction_at_voltage_steps(
         Change of voltage that begins another step, as a fraction of the range of the voltage.
     revolutions : array_like, shape (samples,), or None
         Revolutions of the disc made until each sample, whose speed is corrected by up to half a revolution over the
-        recording; without it the rotation is sought in the force. []
+        recording, and a twentieth; without it the rotation is sought in the force. []
     sliding_speed : array_like, shape (samples,), or None
         Measured or set, of one direction: rest is left out by it, and a change begins another step. Without it rest is
         told by the force at the steps without voltage, see `at_rest`. [m/s]

@@ -23,6 +23,8 @@ _NOISE_BAND = 1.0  # Hz on either side, of the running median
 _OVERSAMPLING = 8
 _SIGNIFICANCE = 50.0  # of the sum over harmonics of power over noise, chi-squared with two degrees each
 _CANDIDATES = 6
+_REACH = 0.5  # turns of the recording, by which a speed is corrected at most
+_MAX_REACH = 0.05  # of the speed, likewise: over few turns, a freer wobble would pass for the run-in
 _COHERENT_SHARE = 0.7  # of the time, in parts in which one wobble of constant phase explains the force better
 _AS_GOOD = 0.98  # of the best explained power, at which a faster rotation is preferred to its subharmonics
 
@@ -98,7 +100,7 @@ def find_rotation_speed(times: Sequence[Floats], forces: Sequence[Floats], *, ha
 def refined_speed(
     times: Sequence[Floats], forces: Sequence[Floats], *, rotation_speed: float, harmonics: int = 3
 ) -> float:
-    """Rotational speed of least misfit within half a turn per recording of a given one. [1/s]
+    """Rotational speed of least misfit within half a turn per recording, and a twentieth, of a given one. [1/s]
 
     Parameters
     ----------
@@ -113,7 +115,7 @@ def refined_speed(
     -------
     float
     """
-    reach = 0.5 / float(times[-1][-1] - times[0][0])
+    reach = min(_REACH / float(times[-1][-1] - times[0][0]), _MAX_REACH * rotation_speed)
     bounds = max(rotation_speed - reach, rotation_speed / 2), rotation_speed + reach
     found = minimize_scalar(
         lambda speed: _misfit(times, forces, float(speed), harmonics), bounds=bounds, method="bounded"

@@ -191,17 +191,10 @@ def correlated_regression(values: Sequence[Floats], designs: Sequence[Floats]) -
     .. [1] G. E. P. Box, G. M. Jenkins, Time Series Analysis (1970).
     .. [2] D. A. Harville, J. Am. Stat. Assoc. 72, 320 (1977). doi:10.1080/01621459.1977.10480998
     """
-    stacked = [np.column_stack([y, x]) for y, x in zip(values, designs, strict=True)]
+    stacked = _stacked(values, designs)
     rows, columns = sum(part.shape[0] for part in stacked), stacked[0].shape[1] - 1
-    if rows <= columns:
-        raise InvalidInput(f"{rows} values are too few for {columns} coefficients")
-    if np.linalg.matrix_rank(np.concatenate(designs)) < columns:
-        raise InvalidInput("the columns of the regression are linearly dependent")
-    objective = partial(_restricted_likelihood, stacked)
-    start = min((np.array([logit(phi), logit(share)]) for phi, share in _STARTS), key=objective)
-    found = minimize(objective, start, method="Nelder-Mead", options={"maxfev": _MAX_EVALUATIONS, "xatol": 0.02})
-    phi, theta = _noise(found.x)
-    white = [_whitened(part, phi, theta) for part in stacked]
+    phi, theta = _likeliest_noise(stacked)
+    white = [whitened(part, phi, theta) for part in stacked]
     whole = np.concatenate(white)
     solution, _, _, _ = np.linalg.lstsq(whole[:, 1:], whole[:, 0])
     innovations = tuple(part[:, 0] - part[:, 1:] @ solution for part in white)
@@ -215,21 +208,45 @@ def correlated_regression(values: Sequence[Floats], designs: Sequence[Floats]) -
     )
 
 
+def noise_of_regression(values: Sequence[Floats], designs: Sequence[Floats]) -> tuple[float, float]:
+    """Phi and theta of the noise of greatest restricted likelihood; arguments, errors as `correlated_regression`."""
+    return _likeliest_noise(_stacked(values, designs))
+
+
+def _stacked(values: Sequence[Floats], designs: Sequence[Floats]) -> list[Floats]:
+    """Series and columns of each part side by side; InvalidInput where they determine no regression."""
+    stacked = [np.column_stack([y, x]) for y, x in zip(values, designs, strict=True)]
+    rows, columns = sum(part.shape[0] for part in stacked), stacked[0].shape[1] - 1
+    if rows <= columns:
+        raise InvalidInput(f"{rows} values are too few for {columns} coefficients")
+    if np.linalg.matrix_rank(np.concatenate(designs)) < columns:
+        raise InvalidInput("the columns of the regression are linearly dependent")
+    return stacked
+
+
+def _likeliest_noise(stacked: Sequence[Floats]) -> tuple[float, float]:
+    """Phi and theta of the noise by restricted likelihood."""
+    objective = partial(_restricted_likelihood, stacked)
+    start = min((np.array([logit(phi), logit(share)]) for phi, share in _STARTS), key=objective)
+    found = minimize(objective, start, method="Nelder-Mead", options={"maxfev": _MAX_EVALUATIONS, "xatol": 0.02})
+    return _noise(found.x)
+
+
 def _noise(parameters: Floats) -> tuple[float, float]:
     """Phi and theta from the unbounded parameters."""
     phi = _LONGEST_MEMORY * float(expit(parameters[0]))
     return phi, phi * float(expit(parameters[1]))
 
 
-def _whitened(part: Floats, phi: float, theta: float) -> Floats:
+def whitened(part: Floats, phi: float, theta: float) -> Floats:
     """Columns of a part filtered to white noise."""
     first = part[:1]
-    ratio = _stationary_ratio(phi, theta)
+    ratio = stationary_ratio(phi, theta)
     rest, _ = lfilter([1.0, -phi], [1.0, -theta], part[1:], axis=0, zi=(theta * ratio - phi) * first)
     return np.concatenate([np.sqrt(ratio) * first, rest])
 
 
-def _stationary_ratio(phi: float, theta: float) -> float:
+def stationary_ratio(phi: float, theta: float) -> float:
     """Variance of the innovations over that of the process."""
     return (1 - phi**2) / (1 + theta**2 - 2 * phi * theta)
 
@@ -237,8 +254,8 @@ def _stationary_ratio(phi: float, theta: float) -> float:
 def _restricted_likelihood(stacked: Sequence[Floats], parameters: Floats) -> float:
     """Minus twice the restricted log-likelihood, without its constant."""
     phi, theta = _noise(parameters)
-    whole = np.concatenate([_whitened(part, phi, theta) for part in stacked])
+    whole = np.concatenate([whitened(part, phi, theta) for part in stacked])
     triangle = np.abs(np.diag(np.linalg.qr(np.roll(whole, -1, axis=1), mode="r")))
     rows, columns = whole.shape[0], whole.shape[1] - 1
     fit = (rows - columns) * np.log(max(triangle[-1] ** 2, 1e-300))
-    return float(fit + 2 * np.log(triangle[:-1]).sum() - len(stacked) * np.log(_stationary_ratio(phi, theta)))
+    return float(fit + 2 * np.log(triangle[:-1]).sum() - len(stacked) * np.log(stationary_ratio(phi, theta)))
