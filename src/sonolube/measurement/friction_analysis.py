@@ -26,6 +26,7 @@ from sonolube.measurement.friction.voltage_steps import (
     VoltageStep,
     friction_at_voltage_steps,
     rotation_speed_at_voltage_steps,
+    rotation_speed_uncertainty,
 )
 from sonolube.measurement.friction.windows import (
     DEFAULT_WINDOW_DURATION,
@@ -267,6 +268,16 @@ def analyse_rotation_speed(recording: "xr.Dataset") -> float | None:
         time=channel_values(recording, "time"),
         friction_force=channel_values(recording, "friction_force"),
         voltage_peak_to_peak=_voltage(recording),
+    )
+
+
+def analyse_rotation_speed_uncertainty(recording: "xr.Dataset", *, rotation_speed: float) -> float:
+    """Standard uncertainty of the rotational speed that `analyse_rotation_speed` found in a recording. [1/s]"""
+    return rotation_speed_uncertainty(
+        time=channel_values(recording, "time"),
+        friction_force=channel_values(recording, "friction_force"),
+        voltage_peak_to_peak=_voltage(recording),
+        rotation_speed=rotation_speed,
     )
 
 

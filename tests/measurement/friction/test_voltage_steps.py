@@ -15,6 +15,7 @@ from sonolube.measurement.friction.voltage_steps import (
     _zero,
     friction_at_voltage_steps,
     rotation_speed_at_voltage_steps,
+    rotation_speed_uncertainty,
     voltage_envelope,
 )
 from sonolube.measurement.friction_analysis import analyse_voltage_steps
@@ -257,3 +258,22 @@ def test_a_step_states_its_span_deviation_and_speed() -> None:
     assert (step.sliding_speed, step.force_zero, step.friction_reduction) == (approx(0.03), 0.0, None)
     with raises(InvalidInput, match="equal in length"):
         friction_at_voltage_steps(time=t, friction_force=force, voltage_peak_to_peak=0 * t, revolutions=t[:9])
+
+
+def test_a_rotation_found_by_the_wobble_errs_as_its_uncertainty_states() -> None:
+    t = np.arange(0, 30, 0.02)
+    voltage = np.where(t > 15, 10.0, 0.0)
+    wobble = 0.04 * np.cos(2 * np.pi * 0.7 * t + 1) + 0.01 * np.cos(4 * np.pi * 0.7 * t)
+    deviations = []
+    for seed in range(12):
+        noise = 0.04 * np.random.default_rng(seed).standard_normal(t.size)
+        force = np.where(t > 15, 0.6, 1.0) + wobble + noise
+        speed = rotation_speed_at_voltage_steps(time=t, friction_force=force, voltage_peak_to_peak=voltage)
+        assert speed is not None
+        stated = rotation_speed_uncertainty(
+            time=t, friction_force=force, voltage_peak_to_peak=voltage, rotation_speed=speed
+        )
+        deviations.append((speed - 0.7) / stated)
+        # one harmonic of amplitude a in white noise s of N samples over T: s sqrt(6 / N) / (pi T a)
+        assert stated == approx(0.04 * np.sqrt(6 / t.size) / (np.pi * 30 * 0.04), rel=0.4)
+    assert 0.45 < np.sqrt(np.mean(np.square(deviations))) < 1.6  # of 12 standard normal numbers in 99.8 % of cases

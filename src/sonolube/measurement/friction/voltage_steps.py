@@ -11,6 +11,7 @@ from sonolube.checks import Floats, require_finite, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.facts.metrics import friction_reduction
 from sonolube.measurement.friction.force_cycle import StickSlipEstimate, not_detected
+from sonolube.measurement.friction.rotation import CLOCK_UNCERTAINTY
 from sonolube.measurement.friction.sliding import sliding_steps
 from sonolube.measurement.friction.step_means import (
     SampledParts,
@@ -21,7 +22,8 @@ from sonolube.measurement.friction.step_means import (
     wobble_columns,
 )
 from sonolube.measurement.friction.stick_slip import stick_slip_of_parts
-from sonolube.measurement.statistics.autocorrelation import correlated_mean
+from sonolube.measurement.friction.wobble import harmonic_columns
+from sonolube.measurement.statistics.autocorrelation import correlated_mean, correlated_regression
 from sonolube.measurement.time_series import require_equal_length, require_time_series, uniform_sample_interval
 
 _MIN_AT_REST = 20  # samples, from which their mean tells the zero of the force
@@ -258,6 +260,34 @@ def rotation_speed_at_voltage_steps(
     found = sliding_steps(t, f, u, None, shortest_step=1.0, settling_time=0.5, tolerance=0.05)
     parts = sampled_parts(found.settled, time=t, friction_force=f)
     return wobble_columns(parts, revolutions=None, harmonics=harmonics)[1] or None
+
+
+def rotation_speed_uncertainty(
+    *, time: Floats, friction_force: Floats, voltage_peak_to_peak: Floats, rotation_speed: float, harmonics: int = 3
+) -> float:
+    r"""Standard uncertainty of a rotational speed that was found by the wobble at voltage steps. [1/s]
+
+    With the harmonics at the speed :math:`n` that was found, it is the standard error of the coefficient of the column
+
+    .. math:: \frac{\partial F}{\partial n} = 2 \pi t \sum_k k (b_k \cos k\theta - a_k \sin k\theta)
+
+    beside them and the levels, in white and red noise, together with that of the clock of the recording.
+    """
+    found = sliding_steps(
+        time, friction_force, voltage_peak_to_peak, None, shortest_step=1.0, settling_time=0.5, tolerance=0.05
+    )
+    parts = sampled_parts(found.settled, time=time, friction_force=friction_force)
+    times, values = parts.averaged(parts.times), parts.averaged(parts.forces)
+    waves = [harmonic_columns(revolutions=rotation_speed * t, harmonics=harmonics) for t in times]
+    levels = np.eye(len(values))
+    columns = [np.column_stack([np.tile(levels[j], (t.size, 1)), waves[j]]) for j, t in enumerate(times)]
+    fit = correlated_regression(values, columns)
+    cosines, sines = np.split(fit.coefficients[len(values) :], 2)
+    order = np.arange(1, harmonics + 1)
+    turned = np.concatenate([order * sines, -order * cosines])
+    slopes = [2 * np.pi * t * (wave @ turned) for t, wave in zip(times, waves, strict=True)]
+    fit = correlated_regression(values, [np.column_stack(both) for both in zip(columns, slopes, strict=True)])
+    return float(np.hypot(np.sqrt(fit.covariance[-1, -1]), CLOCK_UNCERTAINTY * rotation_speed))
 
 
 def _of_parts(f: Floats, values: Floats, parts: Sequence[slice]) -> list[Floats]:

@@ -12,7 +12,12 @@ from sonolube.measurement.friction.rotation import MotorFrictionTrace
 from sonolube.measurement.friction.stated_load import StatedLoad
 from sonolube.measurement.friction.voltage_steps import VoltageStep
 from sonolube.measurement.friction.windows import SteadyStateOnset, WindowStatistics
-from sonolube.measurement.friction_analysis import analyse_rotation_speed, analyse_voltage_steps, channel_values
+from sonolube.measurement.friction_analysis import (
+    analyse_rotation_speed,
+    analyse_rotation_speed_uncertainty,
+    analyse_voltage_steps,
+    channel_values,
+)
 from sonolube.measurement.recorded_conditions import speed_changes, speed_channel
 from sonolube.measurement.statistics.repeated_tests import compare_means, ratio_interval
 from sonolube.report.measured import sheet
@@ -231,7 +236,9 @@ def step_sheet(
     table = _step_table(steps, channel, load, has_speed=has_speed)
     rotation: tuple[sheet.Value, ...] = ()
     if found is not None:
-        rotation = (sheet.quantity_value("rotation_speed", found, label="Rotational speed, found by the wobble"),)
+        error = analyse_rotation_speed_uncertainty(recording, rotation_speed=found)
+        label = "Rotational speed, found by the wobble"
+        rotation = (sheet.quantity_value("rotation_speed", found, label=label, uncertainty=error),)
     caveats = () if speed is not None else (_unknown_rotation(steps),)
     if channel != "friction_force":
         zero = _zero_taken_off(steps[0], "")
