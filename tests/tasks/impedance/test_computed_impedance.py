@@ -119,3 +119,9 @@ def test_a_stress_that_cannot_be_given_is_refused_before_anything_is_solved(
     with raises(InvalidInput, match=complaint) as refusal:
         sl.impedance.compute(part, **arguments)
     assert "\n" not in str(refusal.value)
+
+
+def test_a_part_that_states_its_own_constants_names_no_ceramic() -> None:
+    found = sl.impedance.compute("collar")
+    assert found.object()["ceramic"] is None
+    assert found.text().splitlines()[0].startswith("collar of its own ceramic: ")

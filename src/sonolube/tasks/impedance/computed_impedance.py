@@ -145,10 +145,11 @@ def _tension(
 
 
 def _ceramic_of(part: str, ceramic: str | None) -> str:
-    """Name of the ceramic that was given, or of that of a part."""
+    """Name of the ceramic that was given, or of that of a part; empty for a part that states constants of its own."""
     if ceramic is not None or part not in transducers():
         return ceramic or PART_WIRING["ceramic"]
-    return str(inspect.signature(transducers()[part]).parameters["ceramic"].default)
+    known = inspect.signature(transducers()[part]).parameters.get("ceramic")
+    return "" if known is None else str(known.default)
 
 
 @answer
@@ -205,7 +206,7 @@ class ImpedanceAnswer(Answer):
         """Capacitance and coupled modes of each spectrum, and the least impedance measured."""
         electrodes = ", ".join(self.transducer.electrodes.driven)
         return [
-            f"{self.part} of {self.ceramic}: {electrodes} driven",
+            f"{self.part} of {self.ceramic or 'its own ceramic'}: {electrodes} driven",
             *results.blocks(self.spectra, self.measured),
             *self._stress_blocks(),
         ]
@@ -216,7 +217,7 @@ class ImpedanceAnswer(Answer):
 
     def object(self) -> dict[str, Any]:
         """Electrodes, coupled modes of each spectrum, origin of the dimensions, and the measured file."""
-        content = {"part": self.part, "ceramic": self.ceramic}
+        content = {"part": self.part, "ceramic": self.ceramic or None}
         stresses = {name: results.stress_object(modes) for name, modes in self.stresses.items()}
         more = {"stresses": stresses, **si({"preload": self.preload})} if self.amplitude is not None else {}
         return content | results.impedance_object(self.transducer, self.spectra, self.measured) | more
