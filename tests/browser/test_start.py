@@ -56,7 +56,7 @@ def test_the_link_has_port_and_token_and_all_parts_end_with_the_server(
     (number, act), found = parts
     assert (number, act) == (names_of(server).signal.SIGTERM, server._leave)
     assert found.link == f"http://127.0.0.1:{found.port}/?token={'t' * 40}"
-    assert (found.opens_browser, found.pool.given) == (False, (4,))
+    assert (found.opened, found.pool.given) == (None, (4,))
     guard = found.config.app
     assert guard._access.hosts == {"lab.example"}
     assert guard._access.port == found.port
@@ -92,7 +92,8 @@ def test_a_random_token_is_long_and_a_run_that_goes_on_is_told(
     monkeypatch.setattr("sonolube.browser.lab.routes.Laboratory.end", lambda self: "http://127.0.0.1:9/?token=x")
     server.run(port=0)
     assert len(parts[1].link.partition("token=")[2]) >= 43
-    assert parts[1].opens_browser is True
+    assert parts[1].opened.name == f"open-{parts[1].port}.html"
+    assert not parts[1].opened.exists()  # once the server has ended
     assert capsys.readouterr().out == (
         "A run goes on without the workbench. It can be stopped at http://127.0.0.1:9/?token=x\n"
     )
