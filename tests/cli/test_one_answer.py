@@ -28,6 +28,7 @@ RUNNING = (
     "lab try-driver",
     "new",
     "example",
+    "runs",
 )  # which have the time of day, or write
 USES = {mode.command: mode for mode in reversed(MODES.values())}
 NAMES = [task.name for task in TASKS if task.name in USES and task.name not in (*LONG, *RUNNING)]

@@ -15,7 +15,6 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_files import read_head
 from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping, TextLayout
 from sonolube.measurement.recordings.raw_table import column_of_label, numbered_labels, si_conversion
-from sonolube.measurement.recordings.reader import recipe_of_runs
 from sonolube.measurement.recordings.table_layout import is_summary
 from sonolube.measurement.recordings.text_recordings import DelimitedText
 from sonolube.measurement.recordings.text_tables import (
@@ -103,6 +102,8 @@ class _Column:
 
 def run_table(path: Path, *, mapping: RecordingMapping | None = None) -> RunTable:
     """Columns of a table of runs in a text or a spreadsheet, by a mapping, a recipe for its labels, or headings."""
+    from sonolube.measurement.recordings.reader import recipe_of_runs  # which filters signals, with scipy
+
     found, caveats = _found(path, mapping)
     if mapping is None and (mapping := recipe_of_runs(path, found.table.labels)) is not None:
         caveats = (*caveats, f"read by the recipe {mapping.name!r}")

@@ -6,7 +6,7 @@ Values of a key are a text such as "20kHz:24kHz:50", or numbers in SI.
 import io
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, cast, overload
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, cast
 
 from sonolube.design.ranges import ends_of, values_of
 from sonolube.errors import InvalidInput
@@ -40,10 +40,13 @@ def mapping_of(mapping: InputFile | None) -> RecordingMapping | None:
     return None if mapping is None else mapping_by_name(str(file_path(mapping)))
 
 
-@overload
-def runs_of(runs: OwnRuns, mapping: InputFile | None = None, rig: "Rig | None" = None) -> "xr.Dataset": ...
-@overload
-def runs_of(runs: RunsSource, mapping: InputFile | None = None, rig: "Rig | None" = None) -> "xr.Dataset | None": ...
+def required_runs(runs: OwnRuns, mapping: InputFile | None = None, rig: "Rig | None" = None) -> "xr.Dataset":
+    """Measured runs of a table that a task cannot do without, as `runs_of` reads them; a file may be called none."""
+    folder = None if rig is None else folder_of(rig)
+    with recipes_first_in(None if folder is None else folder / INSTRUMENTS):
+        return _given_runs(runs, mapping, folder)
+
+
 def runs_of(runs: RunsSource, mapping: InputFile | None = None, rig: "Rig | None" = None) -> "xr.Dataset | None":
     """Measured runs of a table, of a query of the catalogue, or of the folder of a rig; a dataset as it is.
 
@@ -83,7 +86,8 @@ def _given_runs(runs: OwnRuns, mapping: InputFile | None, folder: Path | None) -
     from sonolube.measurement.measured_runs import read_runs
 
     path = file_path(runs)
-    return read_runs(path / RUNS_FILE if path.is_dir() else path, mapping=mapping_of(mapping))
+    own = path / RUNS_FILE  # where the path is the folder of a rig
+    return read_runs(own if own.is_file() else path, mapping=mapping_of(mapping))
 
 
 def number_table(path: Path) -> "Floats":

@@ -9,7 +9,7 @@ from sonolube.report import Drawing
 from sonolube.report.results import model_comparison as results
 from sonolube.rig import FrictionPoint, Rig, friction_point
 from sonolube.tasks.answer import Answer, Block, Dataset, Table, answer
-from sonolube.tasks.own_tables import MappedRuns, runs_of
+from sonolube.tasks.own_tables import MappedRuns, required_runs, runs_of
 from sonolube.tasks.parameters import (
     File,
     OptionalRig,
@@ -159,7 +159,7 @@ def fit(
     [0.07, 0.34]
     """
     known = optional_rig(rig)
-    table = runs_of(runs, mapping, known)
+    table = required_runs(runs, mapping, known)
     with stage("fitting") as advance:
         result = fit_runs(table, known, models=comparison.compared_models(model), advance=advance)
     volts = None if known is None or "voltage_peak_to_peak" not in table else results.volts_per_amplitude(known)

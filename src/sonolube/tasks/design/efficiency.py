@@ -10,7 +10,7 @@ from sonolube.report.results.record_object import rig_settings
 from sonolube.rig import Rig
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
 from sonolube.tasks.design.control import friction_force
-from sonolube.tasks.own_tables import MappedRuns, runs_of
+from sonolube.tasks.own_tables import MappedRuns, required_runs
 from sonolube.tasks.parameters import (
     File,
     Number,
@@ -66,7 +66,7 @@ def efficiency(
         target = friction_force("target_friction", target_friction, normal_load=known.normal_load)
     calibration = calibrate_efficiency(
         known,
-        runs_of(runs, mapping, known),
+        required_runs(runs, mapping, known),
         friction_force=target,
         sliding_speed=in_si("speed", speed),
         confidence_level=level,

@@ -16,7 +16,7 @@ from sonolube.rig import Rig
 from sonolube.rig.datasets import LabelledArrays
 from sonolube.tasks.answer import Answer, Block, Dataset, ScreenBlock, Table, answer
 from sonolube.tasks.own_evidence import Evidence, evidence_of
-from sonolube.tasks.own_tables import MappedRuns, runs_of
+from sonolube.tasks.own_tables import MappedRuns, required_runs, runs_of
 from sonolube.tasks.parameters import (
     Disc,
     File,
@@ -91,7 +91,7 @@ def predict(
 def _rigs_with_runs(laboratory: Laboratory) -> "list[tuple[Rig, Dataset]]":
     """Rigs of a laboratory with the runs of each."""
     pairs = laboratory.items() if isinstance(laboratory, Mapping) else laboratory or ()
-    return [(rig_of(rig), runs_of(table)) for rig, table in pairs if table is not None]
+    return [(rig_of(rig), required_runs(table)) for rig, table in pairs if table is not None]
 
 
 @answer
