@@ -302,7 +302,7 @@ def test_the_vibration_of_a_new_rig_is_one_text() -> None:
 
 def test_rigs_of_a_laboratory_come_with_their_runs_and_without_them_not_at_all(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(predict, "rig_of", lambda rig: f"rig {rig}")
-    monkeypatch.setattr(predict, "runs_of", lambda runs: f"runs {runs}")
+    monkeypatch.setattr(predict, "required_runs", lambda runs: f"runs {runs}")
     read: Any = predict._rigs_with_runs
     assert read({"a": "1", "b": None}) == [("rig a", "runs 1")]
     assert read([("a", "1"), ("c", "2")]) == [("rig a", "runs 1"), ("rig c", "runs 2")]

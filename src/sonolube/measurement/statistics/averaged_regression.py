@@ -34,7 +34,7 @@ class Alternative:
         Standard deviation of the normal prior of each coefficient, about zero, in the unit of the series over that of
         the column.
     probability : float
-        Before the series is seen. [1]
+        Before the series is seen.
     """
 
     columns: tuple[int, ...]
@@ -52,7 +52,7 @@ class AveragedRegression:
     covariance : ndarray, shape (functions, functions)
         Within the alternatives and between them, for 95 % intervals.
     probabilities : ndarray, shape (alternatives,)
-        After the series is seen. [1]
+        After the series is seen.
     """
 
     means: Floats
