@@ -61,7 +61,7 @@ def test_the_lines_name_what_is_uncertain_and_the_remedy(tmp_path: Path, sonolub
 def test_shares_stay_within_the_variance_and_only_entries_that_matter_are_advised(
     tmp_path: Path, sonolube: Program, uncertain: Path
 ) -> None:
-    run = sonolube("uncertainty", uncertain, *FEW, "--sobol", "--out", tmp_path)
+    run = sonolube("uncertainty", uncertain, *FEW, "--sobol", "--out", tmp_path, "--full")
     advised, idle = run.out.split("which to measure better")[1].split("without effect: ")
     assert "contact.roughness.summit_radius" in idle.splitlines()[0]  # an exponential contact does not feel it
     assert "contact.roughness.summit_radius" not in advised

@@ -132,6 +132,12 @@ class UncertaintyAnswer(Answer):
             self.rig, self.result, self.structure, ranking=self._ranking, facts=self._facts()
         )
 
+    def first_blocks(self) -> Sequence[Block]:
+        """The same, the ranking before the entries."""
+        return results.uncertainty_blocks(
+            self.rig, self.result, self.structure, ranking=self._ranking, facts=self._facts(), is_ranking_first=True
+        )
+
     def object(self) -> dict[str, Any]:
         """Statistics or band, statuses, uncertain entries, and their ranking."""
         content = results.sampled_object(self.rig, self.result, self.structure)

@@ -96,22 +96,24 @@ def uncertainty_blocks(
     *,
     ranking: Sequence[RankedEntry],
     facts: Sequence[tuple[str, str]],
+    is_ranking_first: bool = False,
 ) -> list[Block]:
-    """Statistics or band, statuses, uncertain entries, and their ranking."""
+    """Statistics or band, statuses, uncertain entries, and their ranking, which may stand before the entries."""
     name = str(result.attrs["outcome"])
     rows, idle = _ranking_rows(ranking, name), _without_effect(ranking)
     failures = failure_counts(result, outcome=name)
-    return [
+    found: list[Block] = [
         f"{rig.title}, {result[name].size} points: {in_sentence(name)}",
         Rows([*amplitude_rows(rig), *facts]),
         *(f"  without result: {count}: {reason}" for reason, count in failures.items()),
         *_status_lines(result, name),
-        "uncertain entries",
-        Rows(entry_rows(rig, result, structure)),
-        *free_lines(structure),
+    ]
+    entries: list[Block] = ["uncertain entries", Rows(entry_rows(rig, result, structure)), *free_lines(structure)]
+    ranked: list[Block] = [
         *((_RANKED, Table(_RANKING_HEADS, rows)) if rows else ()),
         *([f"  without effect: {idle}"] if idle else []),
     ]
+    return [*found, *ranked, *entries] if is_ranking_first else [*found, *entries, *ranked]
 
 
 def sampled_object(rig: Rig, result: "xr.Dataset", structure: IdentifiedStructure | None) -> dict[str, Any]:
