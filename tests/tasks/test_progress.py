@@ -165,7 +165,7 @@ def test_runs_are_a_dataset_a_query_or_a_table_and_a_mapping_is_for_tables(
     with running(compare, mapping="m.toml"), raises(InvalidInput, match="mapping has no meaning without a table of"):
         own_tables.runs_of(None, "m.toml")
     (tmp_path / "runs.csv").write_text("sliding_speed [mm/s],friction_ratio\n20,0.5\n40,0.75\n")
-    found = own_tables.runs_of(tmp_path / "runs.csv")
+    found = own_tables.required_runs(tmp_path / "runs.csv")
     assert found["sliding_speed"].values == approx([0.02, 0.04])
     assert own_tables.mapping_of(None) is None
 

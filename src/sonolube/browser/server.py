@@ -21,6 +21,7 @@ from sonolube.browser.routes import Workbench
 from sonolube.browser.uploads import Uploads
 from sonolube.browser.worker import Pool
 from sonolube.errors import InvalidInput
+from sonolube.operating_system import remove_file
 from sonolube.rig.file.rig_folder import RECORDS
 from sonolube.storage.files import user_state_folder, write_atomically
 
@@ -111,7 +112,7 @@ def run(
         server.run(sockets=[listening])
     finally:
         if opened is not None:
-            opened.unlink(missing_ok=True)
+            remove_file(opened)
         workbench.pool.end()
         workbench.jobs.end()
         workbench.uploads.end()
@@ -124,7 +125,7 @@ def _page_that_opens(link: str, port: int) -> Path:
     onward = f'<meta http-equiv="refresh" content="0; url={link}">'
     page = f'<!doctype html><meta charset="utf-8">{onward}<title>sonolube</title>'
     path = user_state_folder() / f"open-{port}.html"
-    path.unlink(missing_ok=True)
+    remove_file(path)
     return write_atomically(path, page, is_private=True)
 
 
