@@ -1,5 +1,5 @@
 /** Table of own runs: rows that are typed, pasted, switched off and removed; each change is a new table of the view. */
-import {html, useState} from '../vendor/htm-preact-3.1.1.js';
+import {html, useEffect, useState} from '../vendor/htm-preact-3.1.1.js';
 import {ask, useReply} from './api.js';
 import {NOTHING, uploadOf} from './fields.js';
 import {folderEntry, isInFolder, keep, readFolder} from './folder-runs.js';
@@ -104,6 +104,27 @@ function Cell({text, onText, ...rest}) {
 }
 
 /**
+ * Whether a run is used; what is chosen stays until the table says so too, and falls back where it is refused.
+ * @param {{isUsed: boolean|undefined, onSwitch: (isUsed: boolean) => Promise<string>, [name: string]: any}} props
+ *   `onSwitch` returns why the choice was not taken; further ones go to the input
+ */
+function Switch({isUsed, onSwitch, ...rest}) {
+  const [choice, setChoice] = useState(/** @type {boolean|null} */ (null));
+  useEffect(() => setChoice(null), [isUsed]);
+  /** @param {boolean} chosen */
+  const take = async (chosen) => {
+    setChoice(chosen);
+    if (await onSwitch(chosen)) setChoice(null);
+  };
+  return html`<input
+    type="checkbox"
+    checked=${choice ?? isUsed}
+    onChange=${(event) => take(event.target.checked)}
+    ...${rest}
+  />`;
+}
+
+/**
  * @param {{view: Texts, disagreeing?: number[]}} props numbers of the runs, from 1 and among those that are used, which
  *   disagree with the others
  */
@@ -144,12 +165,11 @@ export function RunsTable({view, disagreeing = []}) {
     <td>
       ${
         row < count &&
-        html`<input
-          type="checkbox"
-          checked=${sheet?.used[row]}
+        html`<${Switch}
+          isUsed=${sheet?.used[row]}
           aria-label=${`Use run ${row + 1}`}
           data-test="use-run"
-          onChange=${(event) => act({switch: {row, used: event.target.checked}})}
+          onSwitch=${(used) => act({switch: {row, used}})}
         />`
       }
     </td>
