@@ -46,6 +46,7 @@ def test_the_stack_is_recovered_from_wrong_initial_values(wrong: dict[str, float
         if noise:
             assert found.intervals[name].lower < getattr(found.stack, name) < found.intervals[name].upper
     assert found.charge_per_elongation.value == approx(12.0, rel=1e-4 + noise)
+    assert found.residual_rms == approx(noise * np.sqrt(2), rel=0.1, abs=1e-6)  # of a real and an imaginary part
     assert found.stack.stack_mass == STACK.stack_mass
 
 

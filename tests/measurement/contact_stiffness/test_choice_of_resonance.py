@@ -137,6 +137,7 @@ def test_the_resonance_at_large_drive_is_the_strongest_between_free_and_pressed(
     fit = fit_of(resonance(940.0, height=0.9), resonance(985.0, height=0.2), resonance(1030.0, height=0.4))
     assert _between(fit, [resonance(950.0)], resonance(1040.0)).frequency == 1030.0
     assert _between(fit, [resonance(950.0)], resonance(1000.0)).frequency == 985.0
+    assert _between(fit, [resonance(930.0), resonance(960.0)], resonance(1000.0)).frequency == 940.0
     assert _between(fit, [], resonance(1040.0)).frequency == 940.0
     assert _between(fit, [resonance(1050.0)], resonance(1060.0)).frequency == 1030.0
 
