@@ -126,8 +126,11 @@ def _amplitude(rig: Rig) -> str:
 def errata_of_d() -> str:
     """Errata of the dissertation."""
     return _grid(
-        ["", "Location", "Printed", "Corrected", "Evidence"],
-        [[each.id, *map(_plain, (each.location, each.printed, each.corrected, each.evidence))] for each in errata()],
+        ["", "Kind", "Location", "Printed", "Corrected", "Evidence"],
+        [
+            [each.id, each.kind, *map(_plain, (each.location, each.printed, each.corrected, each.evidence))]
+            for each in errata()
+        ],
     )
 
 

@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from dong2015 import Finding, Reproduction, Row, RowKind, Verdict
 from sonolube import __version__
-from sonolube.facts.published import errata
+from sonolube.facts.published import errata, erratum
 from sonolube.report import Drawing, rendered_files
 from sonolube.storage.files import write_atomically
 from sonolube.studies import Advance
@@ -54,6 +54,11 @@ def counts(rows: Sequence[Row]) -> dict[str, int]:
     return {verdict.value: counted[verdict] for verdict in Verdict}
 
 
+def rows_by_erratum(rows: Sequence[Row]) -> dict[str, list[str]]:
+    """Ids of the rows that are misprints or of other averaging by each erratum, in the order of the errata."""
+    return {each.id: found for each in errata() if (found := [row.id for row in rows if each.id in row.errata])}
+
+
 def counts_by_kind(rows: Sequence[Row]) -> dict[str, dict[str, int]]:
     """Number of rows of each verdict by class, classes and verdicts without rows included."""
     return {kind.value: counts([row for row in rows if row.kind is kind]) for kind in RowKind}
@@ -88,6 +93,10 @@ def _table_of_counts(rows: Sequence[Row]) -> list[str]:
     heading = (f"{len(rows)} published numbers", *_KIND_COLUMNS.values(), "all")
     table = [heading, *_count_cells(by_kind, counts(rows))]
     lines = [f"{name:<24}" + "".join(f"{cell:>12}" for cell in cells) for name, *cells in table]
+    if by_erratum := rows_by_erratum(rows):
+        misprints = sum(erratum(name).kind == "misprint" for name in by_erratum)
+        others = len(by_erratum) - misprints
+        lines.append(f"The misprints are of {misprints} errata, numbers of other averaging of {others}.")
     alternatives = [alternative for row in rows for alternative in row.alternatives.values()]
     if alternatives:
         agree = sum(alternative.reproduced for alternative in alternatives)
@@ -171,6 +180,7 @@ def validation_object(result: Reproduction) -> dict[str, Any]:
         "count": len(result.rows),
         "verdicts": counts(result.rows),
         "verdicts_by_kind": counts_by_kind(result.rows),
+        "errata": rows_by_erratum(result.rows),
         "rows": [_row_object(row) for row in result.rows],
         "caveats": list(result.caveats),
     }
@@ -191,7 +201,7 @@ def _claim_object(one: Finding) -> dict[str, Any]:
 
 def _row_object(row: Row) -> dict[str, Any]:
     """Row with its relative error and verdict, for JSON."""
-    last = ("verdict", "note", "alternatives")
+    last = ("verdict", "note", "errata", "alternatives")
     entry = asdict(row) | {"relative_error": row.relative_error, "kind": row.kind.value, "verdict": row.verdict.value}
     order = (*(name for name in asdict(row) if name not in last), "relative_error", *last)
     return {name: entry[name] for name in order}
@@ -222,5 +232,6 @@ def _page(result: Reproduction, pictures: dict[str, str]) -> str:
         ],
         pictures=pictures,
         errata=errata(),
+        rows_by_erratum=rows_by_erratum(result.rows),
     )
     return printable(page)

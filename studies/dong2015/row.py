@@ -6,7 +6,14 @@ from enum import StrEnum
 from functools import partial
 from typing import Final
 
-from sonolube.facts.published import ComputedValue, PrintedNumber, PublishedValue, propagate_rounding, published_value
+from sonolube.facts.published import (
+    ComputedValue,
+    PrintedNumber,
+    PublishedValue,
+    erratum,
+    propagate_rounding,
+    published_value,
+)
 from sonolube.text.units import convert
 from sonolube.vocabulary import unit_of
 
@@ -26,6 +33,7 @@ class Verdict(StrEnum):
     FITTED = "fitted"
     TRIVIALLY_MET = "trivially_met"
     MISPRINT = "misprint"
+    OTHER_AVERAGING = "other_averaging"
     NOT_REPRODUCED = "not_reproduced"
     UNDETERMINED = "undetermined"
     NOT_COMPUTED = "not_computed"
@@ -55,6 +63,9 @@ Computed = ComputedValue | float
 
 _NO_EFFECT: Final = 0.01
 """Share of the largest reduction that a print leaves open, below which a computed one counts as none. []"""
+
+_LEFT_OPEN: Final = 1 / 3
+"""Share of a printed number to either side that its inputs leave open, from which agreement says nothing. []"""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -91,6 +102,8 @@ class Row:
         values do not matter.
     alternatives : mapping of str to Alternative
         What other models give for the same number, by name. None of them affects the verdict.
+    errata : tuple of str
+        Ids of the errata by which the row is a misprint or of other averaging; empty under any other verdict.
     """
 
     id: str
@@ -109,6 +122,7 @@ class Row:
     possible_low: float | None = None
     possible_high: float | None = None
     alternatives: Mapping[str, Alternative] = field(default_factory=dict)
+    errata: tuple[str, ...] = ()
 
     @property
     def is_upper_limit(self) -> bool:
@@ -131,6 +145,7 @@ def comparison_row(
     kind: RowKind,
     suffix: str = "",
     fitted: str = "",
+    trivial: str = "",
     possible: tuple[float, float] | None = None,
     alternatives: Mapping[str, tuple[Computed, str]] | None = None,
 ) -> Row:
@@ -138,22 +153,26 @@ def comparison_row(
 
     `undetermined` if some possible values agree with the print and others do not. Else `reproduced` within the interval
     that print, scatter and rounding leave, `fitted` if the number itself entered the computation, `trivially_met` if a
-    reduction of zero is left open, as "less than 10 %" does, and none is computed. Outside it, `misprint` if the row is
-    of a published formula, a correction with evidence is on record and the computed number agrees with it; else
-    `not_reproduced`: that a model misses a test says nothing against the print.
+    reduction of zero is left open, as "less than 10 %" does, and none is computed, if the inputs leave a third of the
+    number open to either side, or for a stated reason for which the comparison could not fail. Outside it, if the row
+    is of a published formula, a correction with evidence is on record and the computed number agrees with it,
+    `misprint`, or `other_averaging` where the erratum is of that kind; else `not_reproduced`: that a model misses a
+    test says nothing against the print.
     """
     published = published_value(published) if isinstance(published, str) else published
     computed = _with_interval(computed)
     if possible is not None and not fitted and _is_open(published.number, computed, possible):
         verdict = Verdict.UNDETERMINED
     elif _agree(published.number, computed):
-        verdict = _met(published, computed, fitted=fitted)
+        verdict = _met(published, computed, fitted=fitted, trivial=trivial)
     elif kind is RowKind.PUBLISHED_FORMULA and _meets_correction(published, computed):
-        verdict, note = Verdict.MISPRINT, f"{note.rstrip('.')}. {published.evidence}"
+        verdict, note = _contradicted(published), f"{note.rstrip('.')}. {published.evidence}"
     else:
         verdict = Verdict.NOT_REPRODUCED
     if verdict is Verdict.FITTED:
         note = f"{note.rstrip('.')}. Fitted to this number: {fitted}."
+    if verdict is Verdict.TRIVIALLY_MET and (reason := trivial or _left_open(published, computed)):
+        note = f"{note.rstrip('.')}. Could not fail: {reason}."
     others = {
         name: Alternative(
             computed=_printed(published, _with_interval(other).value),
@@ -164,6 +183,8 @@ def comparison_row(
     }
     interval = _interval(published.number, computed)
     row = _row(published, suffix, interval, computed.value, verdict, note, kind=kind, alternatives=others)
+    if verdict in (Verdict.MISPRINT, Verdict.OTHER_AVERAGING):
+        row = replace(row, errata=published.errata)
     if possible is None:
         return row
     low, high = (_printed(published, limit) for limit in sorted((*possible, computed.value))[::2])
@@ -215,11 +236,27 @@ def _with_interval(computed: Computed) -> ComputedValue:
     return ComputedValue(value=computed, low=computed, high=computed)
 
 
-def _met(published: PublishedValue, computed: ComputedValue, *, fitted: str) -> Verdict:
+def _met(published: PublishedValue, computed: ComputedValue, *, fitted: str, trivial: str) -> Verdict:
     """Verdict of a computed number that agrees with the print."""
     if fitted:
         return Verdict.FITTED
-    return Verdict.TRIVIALLY_MET if _is_trivial(published, computed) else Verdict.REPRODUCED
+    could_not_fail = trivial or _is_trivial(published, computed) or _left_open(published, computed)
+    return Verdict.TRIVIALLY_MET if could_not_fail else Verdict.REPRODUCED
+
+
+def _left_open(published: PublishedValue, computed: ComputedValue) -> str:
+    """What the inputs leave open, where that is a third of a number to either side; empty where it is less."""
+    left, printed = computed.high - computed.low, abs(published.number.value)
+    if not printed or left < 2 * _LEFT_OPEN * printed:
+        return ""
+    low, high = (_printed(published, limit) for limit in (computed.low, computed.high))
+    return f"scatter and rounding of its inputs leave {low:.3g} to {high:.3g}".rstrip()
+
+
+def _contradicted(published: PublishedValue) -> Verdict:
+    """Verdict of a number that meets the correction of a print, by the kind of its erratum."""
+    kinds = {erratum(name).kind for name in published.errata}
+    return Verdict.OTHER_AVERAGING if kinds == {"other averaging"} else Verdict.MISPRINT
 
 
 def _is_open(number: PrintedNumber, computed: ComputedValue, possible: tuple[float, float]) -> bool:

@@ -145,12 +145,10 @@ def _example_test() -> Iterator[Row]:
 
 def _reduction_of_mean_forces(point: power_map.ExamplePoint) -> Row:
     """Friction reduction of the mean forces of Table 4.2 at a voltage."""
-    off, on = power_map.example_test()["intrinsic_friction_force"], point.friction.value
-    note = f"D 2.1 from the mean forces, {off:g} N and {on:g} N"
-    # compared within the scatter of D alone: the rounding of the forces would hide that D averaged otherwise, E17
-    return published_formula_row(
-        f"table-4.2-friction_reduction-{point.row}", formulas.friction_reduction(off, on), note
-    )
+    forces = column_numbers("4.2", "friction_force")
+    off, on = forces[1], forces[point.row]
+    note = f"D 2.1 from the mean forces, {off.value:g} N and {on.value:g} N"
+    return formula_row(f"table-4.2-friction_reduction-{point.row}", note, formulas.friction_reduction, off, on)
 
 
 def _cube_friction(point: power_map.ExamplePoint) -> Row:
@@ -197,7 +195,14 @@ def _line_friction(point: power_map.ExamplePoint) -> Row:
         f"as printed it would rise to {as_printed:.3g} N{_surplus_power_note(point)}"
     )
     friction = float(power_map.line_friction(test, actuator_power=point.actuator_power))
-    return published_model_row(f"table-4.2-friction_force-{point.row}", friction, note, suffix="by-the-line")
+    on_line = 2 * test["intrinsic_friction_force"] - as_printed
+    return published_model_row(
+        f"table-4.2-friction_force-{point.row}",
+        friction,
+        note,
+        suffix="by-the-line",
+        trivial="" if on_line >= 0 else f"the line is at {on_line:.2f} N there, and no friction is less than none",
+    )
 
 
 def _line_power(point: power_map.ExamplePoint) -> Row:

@@ -1,5 +1,6 @@
 """Section 4.3: rows of settings, superimposed speeds and the temperatures of contact and waveguide."""
 
+import math
 from collections.abc import Iterator
 from functools import partial
 from operator import sub
@@ -238,15 +239,15 @@ def _superimposed_speeds() -> Iterator[Row]:
 
 
 def _raised_speed() -> Row:
-    """Superimposed speed of section 4.3.4."""
+    """Superimposed speed of section 4.3.4, which counts the vibration with its peak velocity."""
     slowest, second, *_ = column_numbers("4.4", "sliding_speed").values()
     *_, peak = column_numbers("4.4", "vibration_velocity").values()
+    mean, at_slowest = formulas.superimposed_speed(second.value, peak.value), math.hypot(slowest.value, peak.value)
     note = (
-        f"as Table 4.5 at {second.text} mm/s and the highest voltage; at {slowest.text} mm/s"
-        f" {formulas.superimposed_speed(slowest.value, peak.value) * 1e3:.0f} mm/s; the peak velocity itself is"
-        f" {peak.text} mm/s"
+        f"sqrt(v_r^2 + v_1^2) with {second.text} and {peak.text} mm/s; at {slowest.text} mm/s {at_slowest * 1e3:.0f}"
+        f" mm/s. Table 4.5 counts the vibration with its mean, by which it would be {mean * 1e3:.0f} mm/s (N5)"
     )
-    return formula_row("4.3.4-raised-speed", note, formulas.superimposed_speed, second, peak)
+    return formula_row("4.3.4-raised-speed", note, math.hypot, second, peak)
 
 
 def _speed_rises() -> Iterator[Row]:

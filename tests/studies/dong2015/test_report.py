@@ -10,7 +10,14 @@ from pytest import approx, fixture
 from dong2015 import Finding, Reproduction, Row, RowKind, Verdict
 from dong2015.chapters import ChapterFigure
 from dong2015.claims import Claim, ClaimVerdict
-from dong2015.report import counts, counts_by_kind, reproduction_files, summary_lines, validation_object
+from dong2015.report import (
+    counts,
+    counts_by_kind,
+    reproduction_files,
+    rows_by_erratum,
+    summary_lines,
+    validation_object,
+)
 from dong2015.row import Alternative
 from sonolube import __version__
 
@@ -93,7 +100,7 @@ def test_the_json_has_claims_rows_with_their_errors_and_counts(result: Reproduct
     first = found["rows"][1]
     assert (first["id"], first["kind"], first["verdict"]) == ("first", "default_model", "not_reproduced")
     assert first["relative_error"] == approx(0.05)  # 42 over 40
-    assert list(first)[-4:] == ["relative_error", "verdict", "note", "alternatives"]
+    assert list(first)[-5:] == ["relative_error", "verdict", "note", "errata", "alternatives"]
     assert first["alternatives"]["b"]["computed"] == approx(40.0)
     assert found["rows"][2]["relative_error"] is None
     assert found["verdicts"]["reproduced"] == 3
@@ -119,3 +126,15 @@ def test_the_files_are_page_json_and_figures_with_progress_after_each(result: Re
     assert '<a href="#third">' in page
     assert '<a href="#gone">' not in page
     assert "our default model, against published test" in page
+
+
+def test_errata_are_counted_once_and_list_their_rows() -> None:
+    found = rows_by_erratum(
+        [
+            row("one", Verdict.MISPRINT, errata=("E34",)),
+            row("mean", Verdict.OTHER_AVERAGING, errata=("E17",)),
+            row("two", Verdict.MISPRINT, errata=("E34",)),
+            row("none", Verdict.REPRODUCED),
+        ]
+    )
+    assert found == {"E17": ["mean"], "E34": ["one", "two"]}

@@ -30,6 +30,7 @@ KEYS = (
     "relative_error",
     "verdict",
     "note",
+    "errata",
     "alternatives",
 )
 

@@ -5,12 +5,21 @@ from hypothesis import given, strategies as st
 from pytest import approx
 
 from dong2015.row import RowKind, Verdict, comparison_row, not_computed_row, range_rows, undetermined_row
-from sonolube.facts.published import PrintedNumber, PublishedValue, parse_printed, propagate_rounding, published_value
+from sonolube.facts.published import (
+    ComputedValue,
+    PrintedNumber,
+    PublishedValue,
+    parse_printed,
+    propagate_rounding,
+    published_value,
+)
 
 FORMULA, MODEL = RowKind.PUBLISHED_FORMULA, RowKind.DEFAULT_MODEL
 
 
-def published(text: str, *, evidence: str = "", corrected: tuple[PrintedNumber, ...] = ()) -> PublishedValue:
+def published(
+    text: str, *, evidence: str = "", errata: tuple[str, ...] = ("E28",), corrected: tuple[PrintedNumber, ...] = ()
+) -> PublishedValue:
     return PublishedValue(
         id="example",
         chapter=2,
@@ -19,6 +28,7 @@ def published(text: str, *, evidence: str = "", corrected: tuple[PrintedNumber, 
         unit="mm/s",
         number=parse_printed(text, "mm/s", quantity="sliding_speed"),
         evidence=evidence,
+        errata=errata if evidence else (),
         corrected=corrected,
     )
 
@@ -107,6 +117,33 @@ def test_a_misprint_needs_evidence_and_the_corrected_number() -> None:
     )
 
 
+def test_a_contradiction_has_the_kind_of_its_erratum() -> None:
+    corrected = (parse_printed("20.9", "mm/s", quantity="sliding_speed"),)
+    for errata, verdict in ((("E28",), Verdict.MISPRINT), (("E27",), Verdict.OTHER_AVERAGING)):
+        value = published("20.3", evidence="75.2 m in 1 h.", errata=errata, corrected=corrected)
+        row = comparison_row(value, 20.9e-3, "", kind=FORMULA)
+        assert (row.verdict, row.errata) == (verdict, errata)
+        assert comparison_row(value, 20.3e-3, "", kind=FORMULA).errata == ()
+
+
+@pytest.mark.parametrize(("reach", "verdict"), [(6.7e-3, Verdict.REPRODUCED), (6.8e-3, Verdict.TRIVIALLY_MET)])
+def test_agreement_says_nothing_where_the_inputs_leave_a_third_open(reach: float, verdict: Verdict) -> None:
+    computed = ComputedValue(value=21e-3, low=21e-3 - reach, high=21e-3 + reach)
+    row = comparison_row(published("20.3"), computed, "by hand", kind=FORMULA)
+    assert row.verdict is verdict
+    stated = "by hand. Could not fail: scatter and rounding of its inputs leave 14.2 to 27.8."
+    assert row.note == ("by hand" if verdict is Verdict.REPRODUCED else stated)
+
+
+def test_what_could_not_fail_for_a_stated_reason_is_met_trivially_if_it_agrees() -> None:
+    agreeing, missing = (
+        comparison_row(published("20.3"), speed, "a sum", kind=MODEL, trivial="it is always so")
+        for speed in (20.3e-3, 25e-3)
+    )
+    assert (agreeing.verdict, missing.verdict) == (Verdict.TRIVIALLY_MET, Verdict.NOT_REPRODUCED)
+    assert (agreeing.note, missing.note) == ("a sum. Could not fail: it is always so.", "a sum")
+
+
 def test_what_cannot_be_computed_names_the_missing_input_and_has_no_error() -> None:
     row = undetermined_row("2.4.5-wear-reduction", "the mass of the arm.")
     assert row.verdict is Verdict.UNDETERMINED
@@ -144,7 +181,7 @@ def test_a_model_that_misses_a_test_finds_no_misprint() -> None:
     # D has the multi-scale model err by less than 10 %, with an erratum on record; a larger error is no misprint
     for kind in (RowKind.PUBLISHED_MODEL, RowKind.DEFAULT_MODEL):
         assert comparison_row("3.3.4-error", 0.7, "", kind=kind).verdict is Verdict.NOT_REPRODUCED
-    assert comparison_row("table-2.5-friction_reduction-1", 0.6299, "", kind=FORMULA).verdict is Verdict.MISPRINT
+    assert comparison_row("table-2.5-friction_reduction-1", 0.6299, "", kind=FORMULA).errata == ("E27",)
     assert comparison_row("table-2.5-friction_reduction-1", 0.6299, "", kind=MODEL).verdict is Verdict.NOT_REPRODUCED
 
 

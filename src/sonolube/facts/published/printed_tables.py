@@ -136,7 +136,7 @@ def _conversion(unit: str, si_unit: str) -> tuple[float, float]:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Erratum:
-    """Misprint or contradiction in D, with its correction.
+    """Misprint or contradiction in D, with its correction, or a number that D averages in another way than it says.
 
     Parameters
     ----------
@@ -150,6 +150,8 @@ class Erratum:
         Text that should stand there, or a note that all readings are kept.
     evidence : str
         Evidence for the correction.
+    kind : "misprint" or "other averaging"
+        The second where both numbers may stand, as of the same measurement averaged in two ways.
     """
 
     id: str
@@ -157,6 +159,7 @@ class Erratum:
     printed: str
     corrected: str
     evidence: str
+    kind: Literal["misprint", "other averaging"] = "misprint"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -43,6 +43,8 @@ class PublishedValue:
         least `ABOUT` of the number to either side.
     evidence : str
         Evidence against the print with the id of the erratum; empty where there is none.
+    errata : tuple of str
+        Ids of the errata that the evidence belongs to.
     corrected : tuple of PrintedNumber
         Corrected numbers, in SI; empty where there is no correction or it is in words.
     """
@@ -54,6 +56,7 @@ class PublishedValue:
     unit: str
     number: PrintedNumber
     evidence: str
+    errata: tuple[str, ...]
     corrected: tuple[PrintedNumber, ...]
 
     def limits(self) -> "tuple[PublishedValue, PublishedValue]":
@@ -162,6 +165,7 @@ def _table_cell(id: str) -> PublishedValue:  # noqa: A002 - the field's own word
         unit=column.unit,
         number=number,
         evidence=" ".join(f"{each.evidence} [{each.erratum}]" for each in corrections),
+        errata=tuple(each.erratum for each in corrections),
         corrected=tuple(
             corrected
             for each in corrections
@@ -182,6 +186,7 @@ def _quoted_number(id: str) -> PublishedValue:  # noqa: A002 - the field's own w
         unit=source.unit,
         number=_number_in_words(source),
         evidence=f"{source.evidence} [{source.erratum}]" if source.evidence else "",
+        errata=(source.erratum,) if source.erratum else (),
         corrected=_corrected_numbers(source.corrected, source.quantity, source.unit, 1.0),
     )
 
