@@ -136,8 +136,9 @@ def _of_room(room: str, records: Sequence[Record]) -> str:
 def stages_of(mutant: Mutant, *, known: str = "") -> tuple[list[str], list[list[str]]]:
     """Tests of a mutant's own room, then stages of the others: those that reach its line, of a minute each.
 
-    Where these take less than a minute, the others of their files follow. A line that runs at import is seen in the
-    tests that start a program alone: where none of its room does, those that reach another line of the file are taken.
+    Where these take less than a minute, the others of their files follow, and in the own room those that reach another
+    line of the file: a line that runs at import is seen in tests that start a program alone, one below a cache in the
+    first test that asks for it.
 
     Without a map of lines (`python -m reliability.reach`) those that name what its module defines.
 
@@ -152,9 +153,8 @@ def stages_of(mutant: Mutant, *, known: str = "") -> tuple[list[str], list[list[
     own: list[str]
     if MAP.exists() and row is not None and (tests := reaching(mutant.file, row + 1)):
         near = [test for test in tests if test[0].startswith(room)]
-        own = picked(
-            with_their_files(near or [test for test in reaching_file(mutant.file) if test[0].startswith(room)])
-        )
+        beside = [test for test in reaching_file(mutant.file) if test[0].startswith(room) and test not in near]
+        own = picked([*with_their_files(near), *(test for test in with_their_files(beside) if test not in near)])
         rest = [picked(with_their_files([test for test in tests if not test[0].startswith(room)]))]
     else:
         first, second, above = tests_of(mutant.file)

@@ -30,6 +30,7 @@ from dong2015.friction_models.computed_motion import (
 from dong2015.friction_models.mechanisms import mechanism_figures
 from dong2015.friction_models.variants import variant_figures
 from dong2015.row import Row
+from dong2015.summaries import summary_rows
 from sonolube.charts import draw_chart
 from sonolube.errors import UnknownName
 from sonolube.figure import ReportFigure
@@ -170,6 +171,7 @@ def reproduction(
     for done, section in enumerate(chosen):
         advance(f"section {section.number}", done, 2 * len(chosen))
         rows += section.rows()
+    rows += (row for row in summary_rows({row.id: row for row in rows}) if chapter in (None, row.chapter))
     for done, section in enumerate(chosen, start=len(chosen)):
         advance(f"figures of section {section.number}", done, 2 * len(chosen))
         figures += (ChapterFigure(chapter=section.chapter, **asdict(figure)) for figure in section.figures())

@@ -94,6 +94,8 @@ class Row:
         range), widened by the effect of the rounding of printed inputs on the computed value.
     computed : float or None
         Computed value; None where an input is missing.
+    computed_low, computed_high : float or None
+        What rounding and scatter of the inputs leave it; None where an input is missing.
     verdict : Verdict
     note : str
         Method of the computation, and evidence for the verdict.
@@ -119,6 +121,8 @@ class Row:
     computed: float | None
     verdict: Verdict
     note: str
+    computed_low: float | None = None
+    computed_high: float | None = None
     possible_low: float | None = None
     possible_high: float | None = None
     alternatives: Mapping[str, Alternative] = field(default_factory=dict)
@@ -182,7 +186,11 @@ def comparison_row(
         for name, (other, other_note) in (alternatives or {}).items()
     }
     interval = _interval(published.number, computed)
-    row = _row(published, suffix, interval, computed.value, verdict, note, kind=kind, alternatives=others)
+    row = replace(
+        _row(published, suffix, interval, computed.value, verdict, note, kind=kind, alternatives=others),
+        computed_low=_printed(published, computed.low),
+        computed_high=_printed(published, computed.high),
+    )
     if verdict in (Verdict.MISPRINT, Verdict.OTHER_AVERAGING):
         row = replace(row, errata=published.errata)
     if possible is None:
@@ -211,6 +219,13 @@ def range_rows(published: str, low: Computed, high: Computed, note: str, *, high
     lower, upper = published_value(published).limits()
     yield published_formula_row(lower, low, note)
     yield published_formula_row(upper, high, high_note or note)
+
+
+def at_least(published: str, computed: Computed) -> PublishedValue:
+    """Published lower limit, such as "more than 100 %", whose interval reaches up to a computed number above it."""
+    value, number = published_value(published), published_value(published).number
+    reached = max(number.value, _with_interval(computed).value)
+    return replace(value, number=replace(number, low=number.value, high=reached))
 
 
 def undetermined_row(published: str, missing: str, *, kind: RowKind = RowKind.PUBLISHED_FORMULA) -> Row:

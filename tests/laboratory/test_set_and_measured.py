@@ -10,7 +10,7 @@ from tests.laboratory.simulated_rig import MemoryRecord, SimulatedRig
 
 from sonolube.facts.protocol import Protocol, protocol_from
 from sonolube.laboratory import Block, Channel, DriveSetting, RunState, run_protocol
-from sonolube.laboratory.set_and_measured import difference, monitor_of, self_test_setting
+from sonolube.laboratory.set_and_measured import difference, is_near, monitor_of, self_test_setting
 
 FREQUENCY = 22e3
 SET = DriveSetting(voltage_peak_to_peak=20.0, frequency=FREQUENCY)
@@ -188,3 +188,21 @@ def test_what_the_source_reads_back_is_noted_at_each_step_and_ends_a_run_that_it
 def test_channels_without_a_name_of_the_voltage_are_not_compared() -> None:
     channel = Channel(name="pin_temperature", quantity="temperature")
     assert monitor_of([channel.name], sample_rate=1e6, frequency=FREQUENCY) == ""
+
+
+@pytest.mark.parametrize(
+    ("former", "setting", "near"),
+    [
+        (replace(SET, voltage_peak_to_peak=19.0), SET, True),  # five per cent of 20 V
+        (replace(SET, voltage_peak_to_peak=18.9), SET, False),
+        (replace(SET, voltage_peak_to_peak=21.0), SET, True),
+        (replace(SET, frequency=21e3), SET, False),
+        (None, SET, False),
+        (SET, None, False),
+        (None, None, True),
+    ],
+)
+def test_settings_are_near_that_differ_by_a_twentieth_of_the_voltage_alone(
+    former: DriveSetting | None, setting: DriveSetting | None, near: bool
+) -> None:
+    assert is_near(former, setting) is near

@@ -66,3 +66,9 @@ def test_a_column_of_spreads_is_the_uncertainty_of_the_one_before_it() -> None:
     columns = stated_file_columns(["COF on", "SD", "COF off"], ["", "", ""], [["0.3"], ["0.02"], ["0.4"]], None)
     assert [column.statement for column in columns][1] == "friction_coefficient_uncertainty"
     assert not columns[1].is_asked
+
+
+def test_up_to_sixty_different_words_are_offered_for_a_choice_of_rows() -> None:
+    cells = [[f"run {number}" for number in range(count)] for count in (60, 61)]
+    found = stated_file_columns(["Test", "Probe"], ["", ""], cells, None)
+    assert [len(each.texts) for each in found] == [60, 0]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from dong2015 import formulas
 from dong2015.plots import curve_style, draw_printed, line_style, report_figure, single_axes
-from dong2015.row import Row, formula_row, published_formula_row, published_model_row, range_rows
+from dong2015.row import Row, formula_row, published_formula_row, published_model_row, range_rows, undetermined_row
 from sonolube.checks import Floats
 from sonolube.facts.published import (
     ComputedValue,
@@ -39,11 +39,27 @@ def tribometer_rows() -> Iterator[Row]:
     yield from _settings_of_first_study()
     yield from _protocol()
     yield from _friction()
+    yield from _distances_to_steadiness()
     yield from _surfaces()
     yield from _wear_of_first_study()
     yield from _marks()
     yield from _settings_of_second_study()
     yield from _wear_of_second_study()
+
+
+def _distances_to_steadiness() -> Iterator[Row]:
+    """Yield the distances to steadiness of Table 2.3, and their quotients, by which D says what vibration does."""
+    missing = "a model of how oxide and surfaces run in; the distance was measured."
+    for column in ("friction_distance", "rms_distance"):
+        for row in range(1, 7):
+            yield undetermined_row(f"table-2.3-{column}-{row}", missing)
+    for column, name, note, order in (
+        ("friction_distance", "distance", "Distance with vibration over that without.", 1),
+        ("rms_distance", "fluctuation-distance", "Distance without vibration over that with.", -1),
+    ):
+        for speed, off in zip(_SPEEDS, (1, 3, 5), strict=True):
+            pair = [f"table-2.3-{column}-{off + 1}", f"table-2.3-{column}-{off}"][::order]
+            yield formula_row(f"2.3.3-{name}-ratio-{speed}", note, truediv, *pair)
 
 
 def reductions_of_table_2_3(column: str) -> list[ComputedValue]:

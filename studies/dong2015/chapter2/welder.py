@@ -289,6 +289,9 @@ def _pair_friction() -> Iterator[Row]:
     for amplitude in ("2.5um", "1um"):
         note = "the forces, and of the titanium surfaces the summit radius and density."
         yield undetermined_row(f"2.5.3-friction-reduction-{amplitude}", note)
+    for name in ("tip-diameter-off", "tip-diameter-on", "roughness-off", "roughness-on"):
+        missing = "the worn volumes of pin and disc, and how much of the titanium is carried from one to the other."
+        yield undetermined_row(f"2.5.2-{name}", missing)
 
 
 def _summary() -> Iterator[Row]:

@@ -78,6 +78,13 @@ def _contact() -> Iterator[Row]:
         ("3.1.4-load-count-1", (high - low) / step + 1, "From 40 to 240 N in steps of 20 N."),
     ):
         yield published_formula_row(published, float(computed), note)
+    yield published_formula_row(
+        "3.1.4-load-step", (high - low) / (si_value("3.1.4-load-count-1") - 1), "From 40 to 240 N in 11 loads."
+    )
+    for name in ("load-count-2", "load-count-3"):
+        yield undetermined_row(f"3.1.4-{name}", "the loads, unevenly spaced and only drawn (Fig. 3.3).")
+    yield formula_row("3.1.4-coefficient-1", "The same test in section 2.1.5.", float, "2.1.5-coefficient-off")
+    yield undetermined_row("3.1.4-coefficient-2", "the friction forces, which are only drawn (Fig. 3.3).")
     constants = product(("youngs_modulus", "poisson_ratio"), ("aluminium", "steel"))
     yield formula_row(
         "table-3.2-effective_modulus-1",

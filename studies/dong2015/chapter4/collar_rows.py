@@ -1,7 +1,6 @@
 """Section 4.5, the collar: rows and figures of its stack, modes, impedance, friction and work."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -24,10 +23,18 @@ from dong2015.hardware.collar import (
     THIN_RING_COLLAR,
     Collar,
 )
-from dong2015.hardware.collar_analysis import BoreMotion
-from dong2015.hardware.collar_tuning import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, main_resonance
+from dong2015.hardware.collar_analysis import METAL_LOSS, BoreMotion
+from dong2015.hardware.collar_tuning import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, main_resonance, resonances_in_range
 from dong2015.plots import axes_row, line_style, report_figure, single_axes
-from dong2015.row import Row, RowKind, default_model_row, not_computed_row, published_formula_row, undetermined_row
+from dong2015.row import (
+    Row,
+    RowKind,
+    at_least,
+    default_model_row,
+    not_computed_row,
+    published_formula_row,
+    undetermined_row,
+)
 from sonolube.errors import MissingPackage
 from sonolube.facts.published import ComputedValue, published_value, si_value
 from sonolube.figure import COLOURS, LINES, ReportFigure
@@ -44,6 +51,9 @@ _BY_FINITE_ELEMENTS: Final = (
     "4.5.2-torsional-mode-revised",
     "4.5.3-mode-closed-top",
     "4.5.3-mode-open-top",
+    "4.5.3-pairs-closed-top",
+    "4.5.3-pairs-open-top",
+    "4.5.3-clamping",
     "4.5.4-reduction",
     "4.5.4-work-reduction",
 )
@@ -75,6 +85,8 @@ def collar_rows() -> Iterator[Row]:
     yield from _first_design()
     yield from _revised_designs()
     yield from _final_design()
+    yield from _pairs()
+    yield _clamping()
     yield from _pulled_rod_rows()
 
 
@@ -103,9 +115,6 @@ def _stack() -> Iterator[Row]:
 def _first_design() -> Iterator[Row]:
     """Yield the modes of the first design."""
     oval = _on_mesh(mode_frequency(FIRST_COLLAR, BoreMotion.OVAL))
-    published = published_value("4.5.2-breathing-mode-first")
-    least = published.number.value
-    at_least = replace(published, number=replace(published.number, low=least, high=max(least, oval.value)))
     mean_radius = (FIRST_COLLAR.ring_width + FIRST_COLLAR.bore_diameter) / 4
     radial = float(np.sqrt(200e9 / 8000.0)) / (2 * np.pi * mean_radius)
     note = (
@@ -115,7 +124,7 @@ def _first_design() -> Iterator[Row]:
         "the oval mode (erratum N16)"
     )
     possible = mode_frequency_range(FIRST_COLLAR, BoreMotion.OVAL, assumed=_ASSUMED_DIMENSIONS)
-    yield default_model_row(at_least, oval, note, possible=possible)
+    yield default_model_row(at_least("4.5.2-breathing-mode-first", oval), oval, note, possible=possible)
     yield default_model_row(
         "4.5.2-torsional-mode-first",
         _on_mesh(mode_frequency(FIRST_COLLAR, BoreMotion.DIAGONAL_OVAL)),
@@ -197,6 +206,36 @@ def _on_mesh(frequency: float) -> ComputedValue:
     return ComputedValue(value=frequency, low=frequency * (1 - _MESH_ERROR), high=frequency)
 
 
+def _pairs() -> Iterator[Row]:
+    """Yield the pairs of resonance and antiresonance with closed and with open top."""
+    least = float(np.sqrt(METAL_LOSS))
+    for top, is_open in (("closed", False), ("open", True)):
+        found = resonances_in_range(response_model(FINAL_COLLAR, open_top=is_open), least_coupling=least)
+        places = ", ".join(f"{one.series_frequency * 1e-3:.1f}" for one in found)
+        note = (
+            f"Resonances from {LOWEST_FREQUENCY * 1e-3:g} to {HIGHEST_FREQUENCY * 1e-3:g} kHz whose coupling factor"
+            f" exceeds {least:.2f}, where the pair stands out at the assumed losses: {places} kHz; {_ASSUMED}"
+        )
+        yield default_model_row(f"4.5.3-pairs-{top}-top", float(len(found)), note)
+
+
+def _clamping() -> Row:
+    """Amplitude of the ring with free over that with clamped base, each at its own resonance."""
+    free, clamped = (amplitude_per_volt("crown", clamped=clamped) for clamped in (False, True))
+    note = (
+        f"Top open; {1e6 * free:.3f} and {1e6 * clamped:.3f} um a volt: the sign is that of D, but"
+        f" {clamped / free - 1:.0%} more are hardly significant: the mode is that of the ring, and the base is heavy"
+    )
+    return default_model_row("4.5.3-clamping", free / clamped, note)
+
+
+def amplitude_per_volt(output: str, *, clamped: bool) -> float:
+    """Amplitude of the flat of the inner ring, or of the base, at the main resonance, top open. [m/V]"""
+    model = response_model(FINAL_COLLAR, clamped=clamped, open_top=True)
+    at_resonance = harmonic_response(model, frequency=main_resonance(model).series_frequency)
+    return float(np.abs(at_resonance.displacement_per_volt[model.outputs.index(output), 0]))
+
+
 _SIZES: Final = "Dimensions that D does not print are assumed and fitted to 25 and 24.4 kHz."
 _POINTS: Final = 2001
 
@@ -238,10 +277,8 @@ def _amplitudes() -> "Figure":
     figure, axes = single_axes()
     swing = np.array([0.0, si_value("4.5.4-voltage")])
     for index, (label, clamped) in enumerate((("unclamped", False), ("clamped", True))):
-        model = response_model(FINAL_COLLAR, clamped=clamped, open_top=True)
-        at_resonance = harmonic_response(model, frequency=main_resonance(model).series_frequency)
         for line, (part, output) in enumerate((("inner ring", "crown"), ("base", "base"))):
-            per_volt = np.abs(at_resonance.displacement_per_volt[model.outputs.index(output), 0])
+            per_volt = amplitude_per_volt(output, clamped=clamped)
             style: dict[str, Any] = {"linestyle": LINES[line], "color": COLOURS[index]}
             axes.plot(swing, 1e6 * per_volt * swing / 2, **style, label=f"{part}, {label}")
     axes.set(xlabel="Drive voltage, peak to peak [V]", ylabel="Amplitude [µm]", xlim=(0, swing[1]), ylim=(0, None))

@@ -68,11 +68,29 @@ def map_rows() -> Iterator[Row]:
         " 4.2",
         suffix=_BY_THE_MODEL,
     )
+    yield from _coated_against_uncoated()
     yield _plate_count()
     yield _hardness()
     yield from (
         undetermined_row(name, missing, kind=RowKind.DEFAULT_MODEL) for name, missing in _NOT_COMPUTABLE.items()
     )
+
+
+def _coated_against_uncoated() -> Iterator[Row]:
+    """Yield the comparisons of coated with uncoated steel of Fig. 4.6, each as a quotient below one."""
+    coated, uncoated = (maps["friction_reduction"].mean("normal_load") for maps in (coated_power_maps(), power_maps()))
+    voltages = sorted(number.value for number in column_numbers("4.1", "voltage_peak_to_peak").values())
+    low, high = (
+        (uncoated.interp(voltage_peak_to_peak=voltage), coated.interp(voltage_peak_to_peak=voltage))
+        for voltage in (voltages[1], voltages[-1])  # the first is without vibration
+    )
+    slow, fast = (float(high[0].isel(sliding_speed=end) / high[1].isel(sliding_speed=end)) for end in (0, -1))
+    note = f"Coated steel is rougher alone, {{}} um for {{}} um, and so a little less is lost on it. {_MODEL}".format(
+        *(published_number(f"4.1.3-roughness-{plate}").text for plate in ("coated", "uncoated"))
+    )
+    yield default_model_row("4.1.2-coated-low-voltage", float(low[0].mean() / low[1].mean()), note)
+    yield default_model_row("4.1.2-coated-high-voltage-slow", 1 / slow, note)
+    yield default_model_row("4.1.2-coated-high-voltage-fast", fast, note)
 
 
 def map_figures() -> Iterator[ReportFigure]:

@@ -11,7 +11,7 @@ from dong2015 import formulas
 from dong2015.chapter4 import power_map
 from dong2015.plots import axes_row, draw_printed, line_style, report_figure, single_axes
 from dong2015.published_rigs import STEEL_ON_STEEL_NOTE
-from dong2015.row import Row, formula_row, published_formula_row, published_model_row
+from dong2015.row import Row, formula_row, published_formula_row, published_model_row, undetermined_row
 from sonolube.facts.metrics import power_for_friction
 from sonolube.facts.published import (
     ComputedValue,
@@ -53,6 +53,10 @@ def power_map_rows() -> Iterator[Row]:
     yield line_reduction_row("4.1.2-reduction-lowest-voltage", slowest, actuator_power=first.actuator_power)
     yield line_reduction_row("4.1.2-reduction-highest-voltage", slowest, actuator_power=last.actuator_power)
     yield _intrinsic_friction()
+    yield undetermined_row(
+        "4.1.2-static-friction",
+        "how friction grows while the bodies rest; at the start it is 1.35 times the steady one of Table 4.2",
+    )
 
 
 def nominal_pressure_rows(table_id: str) -> Iterator[Row]:

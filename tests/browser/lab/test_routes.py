@@ -309,3 +309,13 @@ def test_runs_on_disk_are_answers_of_a_worker(bench: Bench) -> None:
     assert (answer.json(), answer.headers["cache-control"]) == ({"runs": []}, "no-store")
     assert bench.client.get("/api/lab/runs/7").status_code == 422
     assert bench.pool.asked[-1] == ("lab_show", {"id": "7"})
+
+
+def test_a_verdict_between_two_settings_ends_no_run_that_is_at_work(bench: Bench, monkeypatch: MonkeyPatch) -> None:
+    monkeypatch.setattr("sonolube.laboratory.records.last_verdict", lambda folder: "confirmed off, drive and motor")
+    bench.record("1", 11)
+    assert (bench.state()["run"]["state"], bench.laboratory.is_at_work()) == ("running", True)
+    assert not (bench.folder / "1" / "end.json").exists()
+    bench.record("2", 12, is_alive=False)
+    bench.state()
+    assert json.loads((bench.folder / "2" / "end.json").read_text())["state"] == "safe"

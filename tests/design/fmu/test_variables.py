@@ -5,10 +5,12 @@ from typing import Any
 from xml.etree import ElementTree as ET
 
 import numpy as np
+import pint
 import pytest
 from pytest import approx
 
 from sonolube.design.fmu.variables import (
+    _BASE_UNITS,
     Description,
     Variable,
     build_description,
@@ -173,3 +175,11 @@ def test_a_controller_measures_friction_and_with_a_tracker_the_phase() -> None:
     *_, phase, frequency, _ = controller_variables(controller, tracker)
     assert (phase.start, phase.lowest, phase.highest) == approx((-np.pi / 2, -np.pi, np.pi))
     assert (frequency.start, frequency.is_sampled, frequency.is_input) == (21.9e3, True, False)
+
+
+@pytest.mark.parametrize("unit", sorted(_BASE_UNITS))
+def test_units_have_the_base_units_of_the_si(unit: str) -> None:
+    found = pint.UnitRegistry().Quantity(1.0, unit).to_base_units()
+    symbols = {"kilogram": "kg", "meter": "m", "second": "s", "ampere": "A", "radian": "rad", "kelvin": "K"}
+    assert found.magnitude == approx(1.0)
+    assert _BASE_UNITS[unit] == {symbols[name]: power for name, power in found.unit_items()}

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Event, Thread
+from typing import cast
 
 import numpy as np
 import pytest
@@ -16,7 +17,8 @@ from tests.tiers import examples
 from sonolube.errors import InvalidInput
 from sonolube.laboratory import DeviceError, DeviceLost, DriveSetting, SamplesLost
 from sonolube.laboratory.drivers import ScpiSource, read_device_map
-from sonolube.laboratory.drivers.scpi_instruments import ReplyEntry
+from sonolube.laboratory.drivers.scpi_instruments import ErrorEntry, ReplyEntry
+from sonolube.laboratory.drivers.visa_connection import VisaConnection
 
 MAPS = Path(__file__).parents[3] / "examples" / "lab"
 GAIN = 20.0
@@ -362,3 +364,23 @@ def test_the_thermocouples_of_a_logger_are_read_by_one_query_a_period_in_si(monk
     with raises(SamplesLost, match="longer than the period of 1 s; lengthen it"):
         slow.read(1)
     slow.close()
+
+
+class Queue:
+    """Instrument with errors in its queue, each answered once."""
+
+    name = "logger"
+
+    def __init__(self, count: int) -> None:
+        self.left = count
+
+    def ask(self, query: str) -> str:
+        assert query == "SYST:ERR?"
+        self.left -= 1
+        return '-113,"Undefined header"' if self.left >= 0 else '+0,"No error"'
+
+
+def test_a_queue_of_errors_has_an_end_within_fifty() -> None:
+    assert ErrorEntry().errors(cast(VisaConnection, Queue(50))) == ['-113,"Undefined header"'] * 50
+    with raises(DeviceError, match=r"logger: answers '-113,.*' to 'SYST:ERR\?' without end"):
+        ErrorEntry().errors(cast(VisaConnection, Queue(51)))

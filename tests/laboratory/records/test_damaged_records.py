@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.laboratory.records.recorded import begun, block_of
+from tests.laboratory.records.recorded import begun, block_of, recorded
 
 from sonolube.errors import SonolubeError
 from sonolube.laboratory.catalogue import query_runs
@@ -105,3 +105,11 @@ def test_a_damaged_record_is_read_recovered_or_refused(whole: Path, tmp_path: Pa
         except SonolubeError as failure:
             text = str(failure)
             assert "\n" not in text
+
+
+def test_a_record_whose_documents_end_in_half_a_line_says_so(tmp_path: Path) -> None:
+    folder = recorded(tmp_path)
+    assert not any("is damaged" in caveat for caveat in read_run(folder).caveats)
+    with (folder / "documents.jsonl").open("ab") as stream:
+        stream.write(b'["event", {"seq_num": 9')
+    assert "the end of documents.jsonl is damaged" in read_run(folder).caveats

@@ -19,7 +19,7 @@ from sonolube.facts.published.running_text import Statement, statement
 ABOUT: Final = 0.1
 """Share of a number that D states as "about" by which another may differ from it; a convention, D gives none. []"""
 
-_PROTOCOL_CHAPTER = 2  # appendix A is the protocol of the tests of that chapter
+_CHAPTERS = {"A": 2, "a": 5}  # of the appendix, protocol of the tests of that chapter, and of the abstract, a summary
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -31,7 +31,7 @@ class PublishedValue:
     id : str
         Id of the statement or table cell.
     chapter : int
-        Chapter of D; 2 for appendix A.
+        Chapter of D; 2 for appendix A, 5 for the abstract.
     source : str
         Place in D, such as "Table 3.4".
     quantity : str
@@ -177,11 +177,12 @@ def _table_cell(id: str) -> PublishedValue:  # noqa: A002 - the field's own word
 def _quoted_number(id: str) -> PublishedValue:  # noqa: A002 - the field's own word
     """Published value of a number in the running text by its id."""
     source = statement(id)
-    in_appendix = source.section.startswith("A")
+    first = source.section[0]
+    place = {"A": f"Appendix {source.section}", "a": "Abstract"}.get(first, f"Section {source.section}")
     return PublishedValue(
         id=id,
-        chapter=_PROTOCOL_CHAPTER if in_appendix else int(source.section[0]),
-        source=f"Appendix {source.section}" if in_appendix else f"Section {source.section}",
+        chapter=_CHAPTERS[first] if first in _CHAPTERS else int(first),
+        source=place,
         quantity=source.quantity,
         unit=source.unit,
         number=_number_in_words(source),

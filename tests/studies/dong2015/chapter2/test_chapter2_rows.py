@@ -76,6 +76,21 @@ def test_arithmetic_finds_the_misprints(row: str, computed: float) -> None:
     assert rows()[row].computed == approx(computed, rel=2e-4)
 
 
+def test_vibration_shortens_the_way_to_steady_friction_and_lengthens_that_to_a_steady_fluctuation() -> None:
+    for speed, quotient, of_fluctuation in (("20.3", 2.78 / 4.17, 3.11 / 35.71), ("87", 4.64 / 8.94, 3.22 / 31.53)):
+        for name, expected in (("distance", quotient), ("fluctuation-distance", of_fluctuation)):
+            row = rows()[f"2.3.3-{name}-ratio-{speed}"]
+            assert (row.verdict, row.computed) == (Verdict.REPRODUCED, approx(expected))
+
+
+def test_the_motor_effect_drives_the_block_at_the_outer_points() -> None:
+    row = rows()["2.1.4-motor-reduction"]
+    assert (row.verdict, row.published_low) == (Verdict.REPRODUCED, approx(100.0))
+    assert rows()["2.1.4-motor-force-slope"].verdict is Verdict.TRIVIALLY_MET
+    limits = [rows()[f"2.1.7-transition-reduction-{end}"] for end in ("from", "to")]
+    assert [(row.computed, row.errata) for row in limits] == [(approx(25.0), ("E36",)), (approx(56.0), ("E36",))]
+
+
 @pytest.mark.parametrize(
     ("row", "computed", "erratum"),
     [

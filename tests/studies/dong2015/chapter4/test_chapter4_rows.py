@@ -102,6 +102,19 @@ def test_a_force_below_zero_is_met_trivially() -> None:
     assert "the line is at -0.66 N there" in row.note
 
 
+def test_coated_steel_loses_less_friction_by_the_model_at_every_voltage() -> None:
+    # Fig. 4.6 has the coated plates ahead at the lowest voltage and at the highest speed
+    found = [
+        rows()[f"4.1.2-coated-{name}"].verdict for name in ("low-voltage", "high-voltage-slow", "high-voltage-fast")
+    ]
+    assert found == [Verdict.NOT_REPRODUCED, Verdict.REPRODUCED, Verdict.NOT_REPRODUCED]
+
+
+def test_the_collar_has_the_pairs_of_the_open_top_when_it_is_closed() -> None:
+    assert [computed(f"4.5.3-pairs-{top}-top") for top in ("closed", "open")] == [3.0, 1.0]  # D: one and three
+    assert 0.9 < computed("4.5.3-clamping") < 1.0
+
+
 def test_every_superimposed_speed_lies_within_two_percent() -> None:
     cells = [row for row in rows().values() if row.id.startswith("table-4.5-superimposed-speed")]
     assert len(cells) == 30

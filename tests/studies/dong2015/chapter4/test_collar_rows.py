@@ -44,7 +44,7 @@ def test_without_finite_elements_the_rows_name_the_package_to_install(monkeypatc
 
     monkeypatch.setattr(chapter4_collar, "cad_kernel", unavailable)
     rows = [row for row in collar_rows() if row.id.startswith("4.5")]
-    assert len(rows) == 8
+    assert len(rows) == 11
     assert {row.verdict for row in rows} == {Verdict.NOT_COMPUTED}
     assert all("pip install netgen-mesher" in row.note for row in rows)
     assert not list(collar_figures())
