@@ -10,6 +10,7 @@ from textwrap import wrap
 from typing import Any, Final
 
 from dong2015 import Finding, Reproduction, Row, RowKind, Verdict
+from dong2015.counterparts import figures_of_d
 from sonolube import __version__
 from sonolube.facts.published import errata, erratum
 from sonolube.report import Drawing, rendered_files
@@ -233,5 +234,7 @@ def _page(result: Reproduction, pictures: dict[str, str]) -> str:
         pictures=pictures,
         errata=errata(),
         rows_by_erratum=rows_by_erratum(result.rows),
+        figures_of_d=figures_of_d(),
+        figure_names={figure.name for figure in result.figures},
     )
     return printable(page)

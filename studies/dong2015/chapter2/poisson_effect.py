@@ -142,6 +142,23 @@ def _nodes() -> "Figure":
     return figure
 
 
+def _motor_force() -> "Figure":
+    """Draw the net motor force over the load at both outer points of the aluminium horn, the block held."""
+    figure, axes = single_axes((4.8, 3.4))
+    held = friction_on_face("aluminium", frequency=si_value("2.1.2-welder-frequency"), sliding_speed=_HELD)
+    loads, coefficient = (
+        np.linspace(0.0, published_number("2.1.2-normal-load").high, 2),
+        si_value("2.1.5-coefficient-off"),
+    )
+    inch = si_value("2.1.3-outer-points")
+    for index, (name, place) in enumerate((("point −1", -inch), ("point +1", inch))):
+        force = -coefficient * np.interp(place, held.position, held.ratio) * loads
+        axes.plot(loads, force, **line_style(index), label=name)
+    axes.set(xlabel="Normal load [N]", ylabel="Net motor force [N]", xlim=(0, loads[-1]), ylim=(0, None))
+    axes.legend(loc="upper left")
+    return figure
+
+
 def _draw_transition_region(axes: "Axes", horn: Horn, *, color: str, alpha: float = 1.0, unit: float = INCH) -> None:
     """Draw the transition region of a horn in Table 2.1 as a band, over positions in a unit of that many metres."""
     start, end = (place / unit for place in measured_region(horn))
@@ -153,6 +170,7 @@ def _motion(horn: Horn) -> FaceMotion:
     return driven_face(horn, frequency=si_value("2.1.2-welder-frequency"))
 
 
+_HELD: Final = 1e-6  # m/s, at which a block counts as held
 _PHASES: Final = {0.0: "driven on one end", -pi / 2: "quarter turn of D 3.25"}
 
 
@@ -169,6 +187,7 @@ def poisson_effect_rows() -> Iterator[Row]:
 def poisson_effect_figures() -> Iterator[ReportFigure]:
     """Figures of section 2.1."""
     yield report_figure("figure-2-4-loci", _loci)
+    yield report_figure("figure-2-6-motor-force", _motor_force, horns=_HORN_NOTE)
     yield from horn_figures()
 
 

@@ -212,6 +212,7 @@ def cube_figures() -> Iterator[ReportFigure]:
     """Figures of sections 3.1 and 3.2."""
     yield report_figure("figure-3-2a-separation", _separations)
     yield report_figure("figure-3-2b-real-area", _areas)
+    yield report_figure("figure-3-3-friction-without-vibration", _friction_without_vibration)
     yield report_figure("figure-3-4-friction-reduction", _draw_reductions)
     yield report_figure("height-laws", _height_laws)
     yield report_figure("tables-3-3-and-3-4-wear", _wear_rates)
@@ -273,6 +274,20 @@ def _draw_reductions() -> "Figure":
         axes.set(title=title, xlabel="Normal load [N]", ylim=(0, 80))
         axes.legend(loc="lower left")
     panels[0].set_ylabel("Friction reduction [%]")
+    return figure
+
+
+def _friction_without_vibration() -> "Figure":
+    """Draw the friction over load by the mean coefficients of the tests."""
+    figure, axes = single_axes((4.8, 3.4))
+    loads = published_number("3.1.4-normal-load")
+    for index, title in enumerate(("aluminium horn on steel, test 1", "steel horn on aluminium, test 2")):
+        coefficient = published_number(f"3.1.4-coefficient-{index + 1}")
+        x = np.array([loads.low, loads.high])
+        axes.plot(x, coefficient.value * x, **line_style(index), label=f"{title}: {coefficient.text}")
+        axes.fill_between(x, coefficient.low * x, coefficient.high * x, color=COLOURS[index], alpha=0.3)
+    axes.set(xlabel="Normal load [N]", ylabel="Friction force [N]", xlim=(0, loads.high), ylim=(0, None))
+    axes.legend(loc="upper left")
     return figure
 
 

@@ -18,6 +18,7 @@ from sonolube.models.dynamics import modes
 from sonolube.rig import (
     StartUp,
     frequency_grid,
+    frequency_response,
     frequency_study,
     least_power_study,
     operating_points,
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
 
 CURVE_VOLTAGES: Final = (20.0, 50.0, 100.0, 200.0)
 """Voltages of the curves over speed and frequency, peak to peak; D states only their range. [V]"""
+
+_IMPEDANCE_RANGE: Final = (15e3, 30e3)  # Hz, about the resonance of the tests; D only draws its own
 
 STEPS_PER_PERIOD: Final = 16
 """Steps of a start-up in each period."""
@@ -200,8 +203,23 @@ class VibrationPeriod:
 
 
 def vibration_period_figures() -> Iterator[ReportFigure]:
-    """Figure of one period."""
+    """Figures of impedance and of one period."""
+    yield report_figure("figure-3-12-impedance", _impedance, identified=IDENTIFIED_NOTE)
     yield report_figure("figure-3-15-period", _period, identified=IDENTIFIED_NOTE)
+
+
+def _impedance() -> "Figure":
+    """Draw magnitude and phase of the electrical impedance of the tribometer over frequency."""
+    figure, (magnitude, phase) = axes_row(2, (7.4, 3.3), sharex=True)
+    found = frequency_response(tribometer_rig(), frequency=np.linspace(*_IMPEDANCE_RANGE, 2001))
+    magnitude.semilogy(1e-3 * found.frequency, found.impedance, **line_style(0))
+    phase.plot(1e-3 * found.frequency, np.degrees(found.phase), **line_style(0))
+    magnitude.set(xlabel="Frequency [kHz]", ylabel="Magnitude of the impedance [Ω]")
+    phase.set(xlabel="Frequency [kHz]", ylabel="Phase [degrees]", yticks=(-90, -45, 0, 45, 90))
+    for axes in (magnitude, phase):
+        axes.axvline(1e-3 * si_value("2.3.1-frequency"), color="0.5", linestyle=":", label="drive of the tests")
+    magnitude.legend(loc="lower right")
+    return figure
 
 
 @cache

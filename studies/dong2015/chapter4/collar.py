@@ -7,14 +7,21 @@ from typing import Any, Final
 import numpy as np
 
 from dong2015.hardware.collar import ASSUMED_RANGES, FINAL_COLLAR, Collar
-from dong2015.hardware.collar_analysis import ELEMENT_SIZE, BoreMotion, Parity, collar_modes, reduced_collar_model
+from dong2015.hardware.collar_analysis import (
+    ELEMENT_SIZE,
+    BoreMotion,
+    Parity,
+    collar_model,
+    collar_modes,
+    reduced_collar_model,
+)
 from dong2015.hardware.collar_tuning import main_resonance
 from sonolube.checks import Floats
 from sonolube.facts.materials import material
 from sonolube.facts.published import si_value
 from sonolube.models.contact import decay_length
 from sonolube.models.dynamics import ExponentialGap, steady_state
-from sonolube.models.fem import ReducedModel, contact_structure, with_free_body
+from sonolube.models.fem import ReducedModel, contact_structure, natural_modes, with_free_body
 from sonolube.models.friction import AsperityStickSlip
 from sonolube.rig import gap_motion
 from sonolube.validation.contacts import steel_on_steel_contact
@@ -31,6 +38,7 @@ PULL_SPEED: Final = 0.05
 _NOMINAL_AREA: Final = 10e-6  # m2, not printed: 10 mm along the rod by 1 mm
 _MODES: Final = 10
 _POSITIONS: Final = 9  # along the rod, at which the vibration is computed
+_THIN: Final = 1e-6  # m, of the middle plane
 _GRAVITY: Final = 9.81  # m/s2
 
 
@@ -89,15 +97,33 @@ def mode_frequency_range(collar: Collar, kind: BoreMotion, *, assumed: tuple[str
     Lower and higher one: of a thick and narrow inner ring with thin bolts and pillars, and of a thin and wide one with
     thick ones. By a coarse mesh, in proportion to what it gives for the collar itself.
     """
-    over_coarse = mode_frequency(collar, kind) / _coarse_frequency(collar, kind)
+    over_coarse = mode_frequency(collar, kind) / coarse_frequency(collar, kind)
     corners: list[dict[str, Any]] = [
         {name: ASSUMED_RANGES[name][stiff ^ (name == "ring_thickness")] for name in assumed} for stiff in (0, 1)
     ]
-    low, high = sorted(over_coarse * _coarse_frequency(replace(collar, **corner), kind) for corner in corners)
+    low, high = sorted(over_coarse * coarse_frequency(replace(collar, **corner), kind) for corner in corners)
     return low, high
 
 
-def _coarse_frequency(collar: Collar, kind: BoreMotion) -> float:
+def mode_near(frequency: float, collar: Collar, *, open_top: bool) -> tuple[float, Floats, Floats]:
+    """Mode that a voltage drives nearest to a frequency: its own in Hz, places and displacements in the middle plane.
+
+    Both of shape (n, 2), by a coarse mesh, which is fine enough to be drawn.
+    """
+    model = collar_model(collar, open_top=open_top, element_size=2 * ELEMENT_SIZE, order=2)
+    found = natural_modes(model, count=_MODES)
+    number = int(np.argmin(np.abs(found.elastic_frequency - frequency)))
+    middle = np.abs(model.mesh.nodes[:, 2]) < _THIN
+    places, moved = model.mesh.nodes[middle, :2], found.shapes[found.rigid_body_count + number][middle, :2]
+    mirror = np.array([-1.0, 1.0])
+    return (
+        float(found.elastic_frequency[number]),
+        np.concatenate([places, places * mirror]),
+        np.concatenate([moved, moved * mirror]),
+    )
+
+
+def coarse_frequency(collar: Collar, kind: BoreMotion) -> float:
     """Frequency of a mode by a mesh of half the fineness and of quadratic elements. [Hz]"""
     found = collar_modes(collar, count=_MODES, parity=_parity(kind), element_size=2 * ELEMENT_SIZE, order=2)
     return found.dominant_frequency(kind)

@@ -10,8 +10,10 @@ from dong2015.chapter4.collar import (
     LOAD_AT_ENDS,
     PULL_SPEED,
     ROD_LENGTH,
+    coarse_frequency,
     mode_frequency,
     mode_frequency_range,
+    mode_near,
     pulled_rod,
     response_model,
 )
@@ -238,6 +240,7 @@ def amplitude_per_volt(output: str, *, clamped: bool) -> float:
 
 _SIZES: Final = "Dimensions that D does not print are assumed and fitted to 25 and 24.4 kHz."
 _POINTS: Final = 2001
+_DRAWN: Final = 0.06  # largest displacement of a drawn mode, of the size of the collar
 
 
 def collar_figures() -> Iterator[ReportFigure]:
@@ -245,6 +248,7 @@ def collar_figures() -> Iterator[ReportFigure]:
     if finite_elements_missing():
         return
     yield report_figure("figures-4-51-4-53-collar-impedance", _impedances, sizes=_SIZES)
+    yield report_figure("figures-4-48-4-54-collar-modes", _modes, sizes=_SIZES)
     yield report_figure("figure-4-55-collar-amplitudes", _amplitudes, sizes=_SIZES)
     yield report_figure("figure-4-57-collar-pull", _pulled_rod, sizes=_SIZES, load=LOAD_AT_ENDS)
 
@@ -270,6 +274,29 @@ def _impedance(axes: "Axes", model: ReducedModel, label: str, index: int) -> Non
     frequency = np.linspace(LOWEST_FREQUENCY, HIGHEST_FREQUENCY, _POINTS)
     admittance = harmonic_response(model, frequency=frequency).admittance
     axes.semilogy(1e-3 * frequency, 1 / np.abs(admittance), **line_style(index), label=label)
+
+
+def _modes() -> "Figure":
+    """Draw the main mode of the first design, and of the final one with closed and open top."""
+    figure, panels = axes_row(3, (8.4, 3.6))
+    closed, opened = (si_value(f"4.5.3-mode-{top}-top") for top in ("closed", "open"))
+    cases = (
+        ("first design", FIRST_COLLAR, coarse_frequency(FIRST_COLLAR, BoreMotion.OVAL), False),
+        ("final, top closed", FINAL_COLLAR, closed, False),
+        ("final, top open", FINAL_COLLAR, opened, True),
+    )
+    for axes, (title, collar, near, is_open) in zip(panels, cases, strict=True):
+        frequency, places, shape = mode_near(near, collar, open_top=is_open)
+        moved = 1e3 * (places + _DRAWN * np.ptp(places) * shape / np.abs(shape).max())
+        size = np.linalg.norm(shape, axis=1)
+        axes.plot(*(1e3 * places.T), ".", color="0.8", ms=1.5)
+        points = axes.scatter(*moved.T, c=size / size.max(), s=3, cmap="viridis", vmin=0, vmax=1)
+        axes.set(xlabel="Across the stacks [mm]", aspect="equal")
+        axes.set_title(f"{title}\n{1e-3 * frequency:.1f} kHz", fontsize=9)
+        axes.grid(visible=False)
+    panels[0].set_ylabel("Along the stacks [mm]")
+    figure.colorbar(points, ax=panels, label="Displacement over its largest [1]", shrink=0.8)
+    return figure
 
 
 def _amplitudes() -> "Figure":

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from dong2015.chapter4 import power_map
-from dong2015.plots import draw_printed, report_figure, single_axes
+from dong2015.plots import axes_row, curve_style, draw_printed, line_style, report_figure, single_axes
 from dong2015.published_rigs import IDENTIFIED_NOTE, plate_rig
 from dong2015.row import Row, RowKind, default_model_row, published_formula_row, undetermined_row
 from sonolube.charts import Line, Zone, draw_chart
@@ -258,12 +258,48 @@ def _load() -> "Figure":
 
 
 def coated_plate_figures() -> Iterator[ReportFigure]:
-    """Figure of the maps on coated steel."""
+    """Figures on coated steel, alone and beside uncoated steel."""
+    yield report_figure("figures-4-5-4-8-coated-steel", _coated_reductions, identified=IDENTIFIED_NOTE)
+    yield report_figure("figure-4-6-coated-against-uncoated", _both_plates)
+    yield report_figure("figure-4-10-coated-stress-maps", lambda: draw_chart(map_chart(coated_stress_maps())))
     yield report_figure(
         "figures-4-12-b-coated-power-maps",
         lambda: draw_chart(map_chart(coated_power_maps())),
         identified=IDENTIFIED_NOTE,
     )
+
+
+def _coated_reductions() -> "Figure":
+    """Draw the reduction on coated steel over speed at five voltages, and over load at six speeds."""
+    figure, (over_speed, over_load) = axes_row(2, (7.8, 3.6), sharey=True)
+    found = 100 * coated_stress_maps()["friction_reduction"]
+    speeds, loads = (found[name].values for name in ("sliding_speed", "normal_load"))
+    for index, volts in enumerate(found["voltage_peak_to_peak"].values):
+        mean = found.isel(voltage_peak_to_peak=index).mean("normal_load")
+        over_speed.plot(1e3 * speeds, mean.values, **line_style(index), label=f"{volts:g} V")
+    for index, place in enumerate(np.linspace(0, speeds.size - 1, 6).astype(int)):
+        highest = found.isel(voltage_peak_to_peak=-1, sliding_speed=place)
+        over_load.plot(loads, highest.values, **curve_style(index), label=f"{1e3 * speeds[place]:.0f} mm/s")
+    over_speed.set(xlabel="Sliding speed [mm/s]", ylabel="Friction reduction [%]", ylim=(-3, 108))
+    over_load.set(xlabel="Normal load [N]", title=f"at {float(found['voltage_peak_to_peak'][-1]):g} V")
+    for axes in (over_speed, over_load):
+        axes.legend(loc="upper right", ncols=2, fontsize=7)
+    return figure
+
+
+def _both_plates() -> "Figure":
+    """Draw the reduction over speed on coated and uncoated steel at the lowest and the highest voltage."""
+    figure, axes = single_axes((5.2, 3.6))
+    for line, (name, maps) in zip(LINES, (("uncoated", stress_maps()), ("coated", coated_stress_maps())), strict=False):
+        found = 100 * maps["friction_reduction"].mean("normal_load")
+        for colour, end in zip(COLOURS, (0, -1), strict=False):
+            volts = float(found["voltage_peak_to_peak"][end])
+            label = f"{name}, {volts:g} V"
+            reduction = found.isel(voltage_peak_to_peak=end).values
+            axes.plot(1e3 * found["sliding_speed"].values, reduction, line, color=colour, label=label)
+    axes.set(xlabel="Sliding speed [mm/s]", ylabel="Friction reduction [%]", ylim=(-3, 108))
+    axes.legend(loc="upper right", ncols=2)
+    return figure
 
 
 def coated_plate_rig() -> DrivenRig:
@@ -276,6 +312,19 @@ def coated_plate_rig() -> DrivenRig:
         title="Tribometer with coated steel plates",
         contact=replace(rig.contact, roughness=rough),
         friction_coefficient=si_value("4.1.3-friction-coated-last"),  # a coefficient: erratum E18
+    )
+
+
+@cache
+def coated_stress_maps() -> "xr.Dataset":
+    """Friction reduction on coated steel over the speeds and loads of the maps on uncoated steel at its voltages."""
+    uncoated = stress_maps()
+    return velocity_stress_map(
+        coated_plate_rig(),
+        sliding_speed=uncoated["sliding_speed"].values,
+        normal_load=uncoated["normal_load"].values,
+        voltage_peak_to_peak=uncoated["voltage_peak_to_peak"].values,
+        power=_POWER,
     )
 
 

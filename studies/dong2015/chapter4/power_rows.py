@@ -24,7 +24,7 @@ from sonolube.facts.published import (
     si_value,
     table,
 )
-from sonolube.figure import COLOURS, MARKERS, ReportFigure
+from sonolube.figure import COLOURS, LINES, MARKERS, ReportFigure
 from sonolube.validation.contacts import STEEL_YIELD_STRENGTHS, efficiency_line
 
 if TYPE_CHECKING:
@@ -256,6 +256,7 @@ def power_figures() -> Iterator[ReportFigure]:
     sufficient = power_map.sufficient_power(power_map.example_test())
     yield report_figure("table-4-1-actuator-power", _power)
     yield report_figure("table-4-2-example-test", _draw_example_test)
+    yield report_figure("figure-4-3-example-in-time", _example_in_time)
     yield report_figure(
         "figure-4-13-efficiency", _draw_efficiency, sufficient=sufficient, speed=1e3 * power_map.line_end()
     )
@@ -310,6 +311,30 @@ def _draw_example_test() -> "Figure":
     left.set(ylabel="Friction force [N]", ylim=(-0.03, 1.0))
     right.set(ylabel="Friction reduction [%]", ylim=(-3, 112))
     figure.legend(*right.get_legend_handles_labels(), loc="outside upper center", ncols=2)
+    return figure
+
+
+def _example_in_time() -> "Figure":
+    """Draw the friction of the example test over its time: the print of each level, the cube and the line."""
+    figure, axes = single_axes((6.4, 3.4))
+    points, test = power_map.example_points(), power_map.example_test()
+    begin, step = si_value("4.1.2-vibration-start"), si_value("4.1.2-level-duration")
+    edges = [si_value("4.1.2-motor-start"), *(begin + step * level for level in range(len(points) + 1))]
+    printed = list(column_numbers("4.2", "friction_force").values())
+    low, high = ([getattr(number, end) for number in printed] for end in ("low", "high"))
+    axes.stairs(high, edges, baseline=low, fill=True, color="0.8", label="Table 4.2, mean and scatter")
+    off, volts = test["intrinsic_friction_force"], [point.voltage_peak_to_peak for point in points]
+    cube = power_map.cube_friction(voltage_peak_to_peak=volts)
+    line = power_map.line_friction(test, actuator_power=power_map.actuator_power(voltage_peak_to_peak=volts))
+    for index, (label, levels) in enumerate((("cube, D 3.15", cube), ("efficiency line, D 4.4", line))):
+        axes.stairs([off, *levels], edges, baseline=None, color=COLOURS[index], linestyle=LINES[index], label=label)
+    axes.plot(edges[0], si_value("4.1.2-static-friction"), MARKERS[0], color="black", label="static friction, D 4.1.2")
+    for place, text in zip(edges[1:], volts, strict=False):
+        axes.annotate(
+            f"{text:g} V", (place + step / 2, 0.98), xycoords=("data", "axes fraction"), ha="center", va="top"
+        )
+    axes.set(xlabel="Time [s]", ylabel="Friction force [N]", xlim=(0, edges[-1]), ylim=(-0.02, 1.4))
+    axes.legend(loc="lower left")
     return figure
 
 

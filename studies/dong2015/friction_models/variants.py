@@ -240,6 +240,11 @@ def _errors_by_test() -> "Figure":
     return figure
 
 
+def _rms_text(rms: float) -> str:
+    """Error of friction ratios to three decimals; one beyond ten says no more than that."""
+    return f"{rms:.3f}" if rms <= 10 else "> 10"
+
+
 def _draw_statistics(axes: "Axes", assessments: list[Assessment]) -> None:
     """Draw error statistics and information criteria as a table, one row for each variant."""
     heads = ("k", "rms", "median", "rms\nCV", "median\nCV", "AICc", "BIC")
@@ -248,9 +253,9 @@ def _draw_statistics(axes: "Axes", assessments: list[Assessment]) -> None:
         criteria = assessment.information
         texts = (
             str(len(assessment.fit.values)),
-            f"{fit.rms:.3f}",
+            _rms_text(fit.rms),
             f"{100 * fit.median_relative:.0f} %",
-            f"{cross_validation.rms:.3f}",
+            _rms_text(cross_validation.rms),
             f"{100 * cross_validation.median_relative:.0f} %",
             f"{criteria.aicc:.0f}" if criteria else "",
             f"{criteria.bic:.0f}" if criteria else "",
