@@ -31,6 +31,7 @@ SWITCHES = str(ROOT / "examples" / "decay-length-run.csv")
 OVER = ("--over", "sliding.sliding_speed=20mm/s,50mm/s")
 STUDY = {"--over": OVER[1], "--of": "waveform", "--from": "", "--to": "", "--points": "4", "--voltage": "10V"}
 DRAWN = {"--sample": "lhs", "--seed": "1", "--workers": "1", "--scheduler": "local", "--chunk": "7"}
+POSTERIOR = {"--evidence": "FOLDER/posterior.json"}
 MEASURED = {"--runs": OWN_RUNS, "--mapping": "FOLDER/halved.toml"}  # own runs behind a prediction
 SWEEP = STUDY | DRAWN | LOADED | MEASURED | {"--amplitude": "computed"}
 SHEETS = {"--test-sheet": "FOLDER/sheet.toml", "--report": "OUT/page.html"}
@@ -376,7 +377,9 @@ MODES = {
         {"--amplitude": ("5um", "6um"), "--torque": ("20N*m", "25N*m"), "--nut-factor": "0.18", "--preload": "20kN"},
     ),
     "sweep on a grid": Mode(
-        "sweep", (RIG, *OVER), SWEEP | {"--over": (OVER[1], "sliding.sliding_speed=20mm/s,60mm/s"), "--from": "1V"}
+        "sweep",
+        (RIG, *OVER),
+        SWEEP | POSTERIOR | {"--over": (OVER[1], "sliding.sliding_speed=20mm/s,60mm/s"), "--from": "1V"},
     ),
     "sweep of a list": Mode(
         "sweep", (RIG, *OVER, "--sample", "list"), SWEEP | {"--over": "contact.normal_load=2N,3N", "--to": "1V"}
@@ -388,12 +391,13 @@ MODES = {
         | {"--over": "contact.normal_load=2N:3N", "--points": "5", "--sample": "grid", "--from": "1V", "--to": "1V"},
     ),
     "sweep at an address": Mode("sweep", (RIG, *OVER, "--scheduler", "tcp://nowhere:1"), {"--workers": "1"}),
+    "sweep of another rig": Mode("sweep", (RIG, "--over", "contact.roughness.rms_height=1um,2um"), POSTERIOR),
     "sweep of a swept key": Mode("sweep", (RIG, *OVER), {"--set": "sliding.sliding_speed=30mm/s"}),
     "sweep of voltage": Mode(
         "sweep", (RIG, "--of", "voltage", "--points", "3"), SWEEP | {"--from": "5V", "--to": "20V"}
     ),
     "sweep of speed": Mode(
-        "sweep", (RIG, "--of", "speed", "--points", "3"), SWEEP | {"--from": "5mm/s", "--to": "50mm/s"}
+        "sweep", (RIG, "--of", "speed", "--points", "3"), SWEEP | POSTERIOR | {"--from": "5mm/s", "--to": "50mm/s"}
     ),
     "sweep of frequency": Mode(
         "sweep", (RIG, "--of", "frequency", "--points", "3"), SWEEP | {"--from": "5kHz", "--to": "21kHz"}
@@ -536,6 +540,7 @@ MODES = {
             "--coupling": "0.3",
             "--duration": "0.06s",
             "--tuned-for": "worst",
+            **POSTERIOR,
             **MEASURED,
             **VIBRATED,
         },
@@ -800,7 +805,7 @@ MODES = {
     "lab run": Mode(
         "lab run",
         ("FOLDER/short.toml", "--rig", str(RIGS / "power_map.toml")),
-        {"--rig": RIG, "--device": "FOLDER/devices.toml", "--seed": "1", "--tag": "mine"},
+        {"--rig": RIG, "--device": "FOLDER/devices.toml", "--seed": "1", "--tag": "mine", **POSTERIOR},
         ("--real-time", "--dry-run", "--yes"),
     ),
     "lab virtual": Mode(
@@ -844,6 +849,7 @@ MODES = {
             "--device": "FOLDER/devices.toml",
             "--seed": "1",
             "--tag": "mine",
+            **POSTERIOR,
             **VIBRATED,
         },
         ("--real-time",),

@@ -20,6 +20,32 @@ ALONG = ["vibration.direction=along", "friction.model=coulomb"]
 AXES = {"sliding.sliding_speed": "10mm/s,20mm/s", "drive.voltage_peak_to_peak": "5V,10V"}
 
 
+_VIBRATED = """title = "vibrated"
+source = "none"
+
+[limits]
+voltage_maximum = "30 V"
+duration_maximum = "2 s"
+
+[[steps]]
+kind = "acquire"
+channels = ["friction_force"]
+sample_rate = "400 Hz"
+duration = "1 s"
+
+[[steps]]
+kind = "motor_speed"
+sliding_speed = "50 mm/s"
+
+[[steps]]
+kind = "voltage_steps"
+voltages = ["25.9 V"]
+step_duration = "0.8 s"
+frequency = "22 kHz"
+unipolar = true
+"""
+
+
 @fixture(scope="module")
 def file(tmp_path_factory: Any) -> Path:
     """Posterior whose decay and slip lengths are twice the shipped ones."""
@@ -41,6 +67,9 @@ TASKS: dict[str, Callable[[Path], Any]] = {
     "uncertainty": lambda file: sl.uncertainty(RIGS / "tribometer_uncertain.toml", samples=32, evidence=file),
     "map": lambda file: sl.map(MAPPED, over=AXES, target_reduction="60%", evidence=file),
     "plan": lambda file: sl.plan(RIG, speed="20:80:3mm/s", vibration="1:2.5:2um", points=2, evidence=file),
+    "sweep": lambda file: sl.sweep(RIG, of="speed", points=3, evidence=file),
+    "sweep of keys": lambda file: sl.sweep(RIG, over={"sliding.sliding_speed": "20mm/s,50mm/s"}, evidence=file),
+    "control": lambda file: sl.control(RIG, duration="40ms", evidence=file),
     "lab virtual": lambda file: sl.lab.virtual(MAPPED, dry_run=True, evidence=file),
 }
 
@@ -69,6 +98,28 @@ def test_friction_has_the_interval_that_predict_has(changes: list[str], file: Pa
     assert high > without[1] + 0.01  # over a longer length vibration does less
 
 
+def test_studies_and_control_have_the_interval_that_predict_has(file: Path) -> None:
+    expected = np.quantile(sl.predict(RIG, evidence=file)["friction_ratio"], [0.1, 0.9])
+    study = sl.sweep(RIG, of="voltage", lowest="14V", highest="28V", points=2, evidence=file).study
+    found = [study[name].values.ravel()[-1] for name in ("lowest_predicted_ratio", "highest_predicted_ratio")]
+    assert found == approx(expected, rel=0.02)
+    reach = sl.control(RIG, duration="40ms", evidence=file).object()["predicted_least_friction"]["interval_80"]
+    force = sl.predict(RIG, evidence=file)["friction_force"].quantile([0.1, 0.9]).values
+    assert reach == approx(force, rel=0.03)
+
+
+def test_a_virtual_tribometer_draws_its_friction_from_the_posterior(file: Path, tmp_path: Path) -> None:
+    protocol = tmp_path / "vibrated.toml"
+    protocol.write_text(_VIBRATED)
+    without, within = (
+        sl.lab.run(protocol, rig=MAPPED, seed=2, out=tmp_path, evidence=each).run for each in (None, file)
+    )
+    before, after = (each.dataset()["friction_force"].values[-100:].mean() for each in (without, within))
+    assert after > 1.1 * before  # over twice the length vibration does less
+    assert "3 points of Own (own.json)" in str(within.facts["evidence"])
+    assert "evidence" not in without.facts
+
+
 def test_a_file_and_its_posterior_are_one_argument(file: Path) -> None:
     read = read_evidence_posterior(file)
     assert evidence_of(read) is read
@@ -85,5 +136,16 @@ def test_evidence_that_would_not_be_used_is_refused(file: Path) -> None:
         sl.map(MAPPED, over=AXES, evidence=file)
     with raises(InvalidInput, match="evidence has no meaning without interval of friction_ratio"):
         sl.uncertainty(RIGS / "tribometer_uncertain.toml", of="vibration_amplitude", samples=32, evidence=file)
+    with raises(InvalidInput, match="evidence has no meaning with dry_run"):
+        sl.lab.run("map_test", rig=MAPPED, dry_run=True, evidence=file)
+    for task in (sl.lab.hold, lambda rig, **given: sl.lab.run("map_test", rig=rig, **given)):
+        with raises(InvalidInput, match=r"evidence has no meaning with device_map MAP\.toml, whose friction is"):
+            task(MAPPED, device_map=file, evidence=file)
+    with raises(InvalidInput, match=r"evidence has no meaning here: contact\.roughness\.rms_height changes the rig"):
+        sl.sweep(RIG, over={"contact.roughness.rms_height": "1um,2um"}, evidence=file)
+    with raises(InvalidInput, match=r"evidence has no meaning where nothing is predicted: .*soft or floating"):
+        sl.sweep(RIGS / "pom_on_steel.toml", of="speed", points=2, evidence=file)
+    with raises(InvalidInput, match=r"evidence has no meaning where nothing is predicted: .*soft or floating"):
+        sl.control(RIGS / "pom_on_steel.toml", duration="40ms", evidence=file)
     with raises(InvalidInput, match=r"gone\.json: no such file"):
         sl.friction(RIG, evidence=file.parent / "gone.json")

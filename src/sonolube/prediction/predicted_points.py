@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from sonolube.errors import SonolubeError
 from sonolube.prediction.applicability import applicability, tested_ranges_text
 from sonolube.prediction.chances import INTERVAL, ReductionChances, reduction_chances
+from sonolube.prediction.evidence_posterior import EvidencePosterior
 from sonolube.prediction.predictive import DRAWS
 from sonolube.prediction.verdict import VERDICTS, Verdict, point_verdicts
 from sonolube.rig import Rig
@@ -107,18 +108,20 @@ class PredictedRig:
         )
 
     def caveats(self, verdict: ArrayLike) -> tuple[str, ...]:
-        """Sentences on points with these verdicts: own runs, the rig unlike the tested ones, ranges of the tests."""
+        """Sentences on points with these verdicts: own runs and evidence, a rig unlike the tests, their ranges."""
         found: list[str] = []
         if self.chances is not None:
             contradiction = self.chances.contradiction
-            found = [*([contradiction] if contradiction else []), *self.chances.run_caveats]
+            found = [*([contradiction] if contradiction else []), *self.chances.run_caveats, *self.chances.caveats]
         found += applicability(self.rig).caveats
         if np.any(np.asarray(verdict) == VERDICTS.index(Verdict.EXTRAPOLATED)):
             found.append(f"points beyond the published tests, {tested_ranges_text(self.rig)}, are extrapolated")
         return tuple(found)
 
 
-def predicted_rig(rig: Rig, *, points: int, runs: "xr.Dataset | None" = None) -> PredictedRig:
+def predicted_rig(
+    rig: Rig, *, points: int, runs: "xr.Dataset | None" = None, evidence: EvidencePosterior | None = None
+) -> PredictedRig:
     """Prediction of a rig for its operating points.
 
     Parameters
@@ -128,6 +131,8 @@ def predicted_rig(rig: Rig, *, points: int, runs: "xr.Dataset | None" = None) ->
         How many there are; more than 2000 are not predicted, to bound the time.
     runs : xarray.Dataset, optional
         Own measured runs over `run`, as `predict` takes them.
+    evidence : EvidencePosterior, optional
+        Posterior by own published tests too, in place of the shipped one.
 
     Returns
     -------
@@ -143,7 +148,7 @@ def predicted_rig(rig: Rig, *, points: int, runs: "xr.Dataset | None" = None) ->
         reason = f"{points} points are more than the {MAX_PREDICTED} up to which each is predicted"
         return PredictedRig(rig=rig, chances=None, reason=reason)
     try:
-        return PredictedRig(rig=rig, chances=reduction_chances(rig, runs=runs, draws=DRAWS))
+        return PredictedRig(rig=rig, chances=reduction_chances(rig, runs=runs, evidence=evidence, draws=DRAWS))
     except SonolubeError as refusal:
         if runs is not None:
             raise

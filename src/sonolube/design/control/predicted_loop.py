@@ -69,6 +69,8 @@ class PosteriorLoop:
     cautious : CautiousTuning or None
     runs : int
         Own runs that the prediction rests on.
+    caveats : tuple of str
+        Own runs that contradict or disagree, and own published tests that the prediction was learned from too.
     """
 
     force: Floats
@@ -77,6 +79,7 @@ class PosteriorLoop:
     margins: tuple[StabilityMargins, ...]
     cautious: CautiousTuning | None
     runs: int
+    caveats: tuple[str, ...] = ()
 
     @property
     def reach(self) -> tuple[float, float, float]:
@@ -157,6 +160,7 @@ def posterior_loop(
         margins=margins,
         cautious=cautious,
         runs=chances.runs,
+        caveats=(*filter(None, [chances.contradiction]), *chances.run_caveats, *chances.caveats),
     )
 
 

@@ -20,12 +20,14 @@ from sonolube.errors import InvalidInput, OutsideRange, SonolubeError
 from sonolube.facts.metrics import EfficiencyLine
 from sonolube.measurement.run_columns import runs_help
 from sonolube.prediction.chances import ReductionChances, odds_text, reduction_chances
+from sonolube.prediction.evidence_posterior import EvidencePosterior
 from sonolube.prediction.predictive import DRAWS
 from sonolube.report import Drawing, Page
 from sonolube.report.results.design import control_design as results
 from sonolube.report.results.record_object import amplitude_rows, operating_point, rig_settings
 from sonolube.rig import AMPLITUDE, VOLTAGE, Rig, commanded_quantity, own_level
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
+from sonolube.tasks.own_evidence import Evidence, evidence_of
 from sonolube.tasks.own_tables import MappedRuns, runs_of
 from sonolube.tasks.parameters import File, Number, Parameter, Quantity, RigFile, RunsSource, WatchedRig, rig_of
 from sonolube.tasks.progress import stage
@@ -298,6 +300,7 @@ def control(
     ] = "model",
     runs: Annotated[RunsSource, _RUNS] = None,
     mapping: MappedRuns = None,
+    evidence: Evidence = None,
     **watch: Unpack[WatchedRig],
 ) -> ControlAnswer:
     """Friction control: a tuned controller, its run in closed loop, its C source and its lookup table.
@@ -344,7 +347,8 @@ def control(
     with stage("controlling"):
         mode, assumed = resonance_without_structure(known, quality, coupling)
         line = _efficiency_line(in_si("efficiency", efficiency)) if feed_forward == "efficiency" else None
-        chances = _chances(known, measured, is_needed=feed_forward == "prediction" or tuned_for == "worst")
+        is_needed = feed_forward == "prediction" or tuned_for == "worst"
+        chances = _chances(known, measured, evidence_of(evidence, known), is_needed=is_needed)
         settings, study, posterior = _designed(known, settings, chances, tuned_for, mode=mode, line=line)
         rejection = loops.disturbance_rejection(
             study.loop,
@@ -369,14 +373,18 @@ def control(
     )
 
 
-def _chances(rig: Rig, runs: "Dataset | None", *, is_needed: bool) -> ReductionChances | str:
+def _chances(
+    rig: Rig, runs: "Dataset | None", evidence: EvidencePosterior | None, *, is_needed: bool
+) -> ReductionChances | str:
     """Distribution of the friction ratio of a rig; why there is none, which is refused where it is needed."""
     try:
-        return reduction_chances(rig, runs=runs, draws=DRAWS)
+        return reduction_chances(rig, runs=runs, evidence=evidence, draws=DRAWS)
     except SonolubeError as refusal:
         if is_needed or runs is not None:
             raise
-        return str(refusal).removeprefix(f"{rig.title}: ")
+        reason = str(refusal).removeprefix(f"{rig.title}: ")
+        refuse_unused("evidence", because=f"where nothing is predicted: {reason}")
+        return reason
 
 
 def _designed(

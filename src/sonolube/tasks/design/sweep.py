@@ -23,6 +23,7 @@ from sonolube.design.sweep_plan import OPERATING_CONDITIONS
 from sonolube.errors import InvalidInput
 from sonolube.measurement.run_columns import runs_help
 from sonolube.models.friction.models.range_check import ratio_caveats
+from sonolube.prediction.evidence_posterior import EvidencePosterior
 from sonolube.prediction.predicted_points import PredictedRig, predicted_rig
 from sonolube.report import Drawing, Page
 from sonolube.report.results.design import sweep as results
@@ -37,6 +38,7 @@ from sonolube.report.results.rig_point import own_point_lines, own_point_object
 from sonolube.rig.resolved_rig import resolved_rig
 from sonolube.storage.files import expect_files
 from sonolube.tasks.answer import Answer, Block, Dataset, Rows, answer
+from sonolube.tasks.own_evidence import Evidence, evidence_of
 from sonolube.tasks.own_tables import MappedRuns, Values, ends_by_key, refuse_replaced, runs_of, values_by_key
 from sonolube.tasks.parameters import File, Keep, KeyValues, Parameter, RigFile, RunsSource, WatchedRig, kept, rig_of
 from sonolube.tasks.progress import stage
@@ -84,10 +86,12 @@ def parametric_study(
     voltages: Sequence[str],
     amplitudes: Sequence[str],
     runs: "Dataset | None" = None,
+    evidence: EvidencePosterior | None = None,
 ) -> "ParametricStudyAnswer":
     """Study of a rig over one quantity, whose range has ends with units; default ones where None.
 
     `runs`: Own measured runs, on which the predicted friction ratio rests beside the published tests.
+    `evidence`: Posterior by own published tests too, in place of the shipped one.
     """
     _require_studied(rig, of)
     curves = _curves(rig, of, voltages, amplitudes)
@@ -105,7 +109,7 @@ def parametric_study(
         run = partial(getattr(rigs, usual.study), rig, **values, **curves, **own)
     with stage("sweeping") as advance:
         result = run(advance=lambda done, total: advance(of, done, total))
-    predicted = predicted_rig(rig, points=result["status"].size, runs=runs)
+    predicted = _predicted_rig(rig, result["status"].size, runs, evidence)
     answer = ParametricStudyAnswer(rig=rig, of=of, study=with_predictions(result, predicted), predicted=predicted)
     if result["friction_ratio"].isnull().all():
         raise InvalidInput(f"no point has a result: {next(iter(answer.failures()))}")
@@ -300,6 +304,7 @@ def sweep(
     chunk: Annotated[int, Parameter("Points computed and kept together.", lowest=1)] = 100_000,
     runs: Annotated[RunsSource, _RUNS] = None,
     mapping: MappedRuns = None,
+    evidence: Evidence = None,
     keep: Keep = None,
     **watch: Unpack[WatchedRig],
 ) -> "SweepAnswer | ParametricStudyAnswer":
@@ -315,7 +320,7 @@ def sweep(
     [0.66, 0.35]
     """
     known = rig_of(rig)
-    measured = runs_of(runs, mapping, known)
+    measured, learned = runs_of(runs, mapping, known), evidence_of(evidence, known)
     if (of is None) == (not over):
         raise InvalidInput(
             f"needs either {shown('over')}, keys with their values, or {shown('of')}, one quantity over its usual range"
@@ -333,6 +338,7 @@ def sweep(
             voltages=voltage,
             amplitudes=vibration,
             runs=measured,
+            evidence=learned,
         )
     refuse_unused(*_OF_ONLY, because=f"for {shown('over')}")
     refuse_replaced(known, over or {})
@@ -344,7 +350,7 @@ def sweep(
     folder = kept(keep, f"{known.name}-sweep-{plan.digest[:8]}")
     if folder is not None:
         expect_files(folder, _FILES)
-    predicted = _predicted(plan, known, measured)
+    predicted = _predicted(plan, known, measured, learned)
     with stage("sweeping") as advance:
         result = design.sweep(
             plan,
@@ -358,18 +364,31 @@ def sweep(
     return SweepAnswer(rig=known, plan=plan, result=result, folder=folder, predicted=predicted)
 
 
-def _predicted(plan: SweepPlan, rig: rigs.Rig, runs: "Dataset | None") -> PredictedRig | str:
+def _predicted(
+    plan: SweepPlan, rig: rigs.Rig, runs: "Dataset | None", evidence: EvidencePosterior | None
+) -> PredictedRig | str:
     """Prediction of the rig of a sweep; why there is none where its points are of other rigs."""
     others = [key for key in plan.values if key not in _PREDICTED_KEYS]
     if not others:
-        return predicted_rig(rig, points=plan.points, runs=runs)
+        return _predicted_rig(rig, plan.points, runs, evidence)
     reason = (
         f"{others[0]} changes the rig, and a prediction is of one rig at other"
         f" {', '.join(key.rpartition('.')[2].replace('_', ' ') for key in _PREDICTED_KEYS)}"
     )
     if runs is not None:
         raise InvalidInput(f"{shown('runs')} has no meaning here: {reason}")
+    refuse_unused("evidence", because=f"here: {reason}")
     return reason
+
+
+def _predicted_rig(
+    rig: rigs.Rig, points: int, runs: "Dataset | None", evidence: EvidencePosterior | None
+) -> PredictedRig:
+    """Prediction of the rig at its points; evidence that it does not rest on is refused."""
+    found = predicted_rig(rig, points=points, runs=runs, evidence=evidence)
+    if found.chances is None:
+        refuse_unused("evidence", because=f"where nothing is predicted: {found.reason}")
+    return found
 
 
 @answer

@@ -21,6 +21,7 @@ from sonolube.tasks.answer import Answer, Block, Dataset, answer
 from sonolube.tasks.design import control as loop
 from sonolube.tasks.lab.protocol_run import ControlDoor, device_file, run_stage
 from sonolube.tasks.lab.run_folders import RUNS, AllRuns, Device, NoSelfTest, RealTime, Seed, Tags, place_of_records
+from sonolube.tasks.own_evidence import Evidence, evidence_of
 from sonolube.tasks.parameters import Number, Parameter, Quantity, RigFile, WatchedRig, rig_of
 from sonolube.tasks.progress import stage
 from sonolube.tasks.task import in_si, refuse_unused, shown, task
@@ -43,6 +44,8 @@ class HoldAnswer(Answer):
         Beside the assumptions of the rig file.
     folder : Path
         For figure and dataset, in that of the run.
+    learned_from : tuple of str
+        Own published tests that the friction of the virtual rig was learned from too.
     """
 
     rig: Rig
@@ -52,6 +55,7 @@ class HoldAnswer(Answer):
     simulated: bool
     assumed: Mapping[str, str]
     folder: Path
+    learned_from: tuple[str, ...] = ()
 
     def blocks(self) -> Sequence[Block]:
         """Reference, margins by the design, friction held at each speed, and the record."""
@@ -64,7 +68,7 @@ class HoldAnswer(Answer):
     def caveats(self) -> Sequence[str]:
         """Caveats of the record, speeds at which the reference was out of reach, and a mark of simulated runs."""
         told = (*self.run.caveats, *results.saturation_lines(self.held))
-        return (*told, SIMULATED) if self.simulated else told
+        return (*told, SIMULATED, *self.learned_from) if self.simulated else told
 
     def assumptions(self) -> Mapping[str, str]:
         """Assumptions of the rig file and of the resonance."""
@@ -130,6 +134,7 @@ def hold(
     run_in: Annotated[Number, Quantity("Sliding without vibration before the controller takes over.", "s")] = "1s",
     duration: Annotated[Number, Quantity("Time under control.", "s")] = "10s",
     device_map: Device = "virtual",
+    evidence: Evidence = None,
     seed: Seed = 0,
     real_time: RealTime = False,
     no_self_test: NoSelfTest = False,
@@ -175,7 +180,8 @@ def hold(
         temperature=None if temperature_limit is None else _temperature(temperature_limit),
         force=in_si("friction_limit", friction_limit),
     )
-    virtual = virtual_tribometer(known, seed=seed, real_time=real_time) if file is None else None
+    learned = evidence_of(evidence, known) if file is None else None
+    virtual = virtual_tribometer(known, seed=seed, real_time=real_time, evidence=learned) if file is None else None
     devices = ready_devices(Path(device_map)) if virtual is None else virtual.devices
     holds.require_holdable(wanted, devices)
     wanted_run = RunRequest(
@@ -185,6 +191,7 @@ def hold(
         device_file=file,
         seed=seed,
         tags=tag,
+        evidence=learned,
     )
     require_free(devices.resources)
     facts: dict[str, str | float] = {"reference_friction_force": wanted.friction_force}
@@ -207,6 +214,7 @@ def hold(
         simulated=devices.simulated,
         assumed=assumed,
         folder=recorder.folder / "hold",
+        learned_from=wanted_run.evidence_caveats,
     )
 
 

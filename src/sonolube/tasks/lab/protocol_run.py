@@ -175,6 +175,7 @@ def device_file(device_map: str | Path) -> Path | None:
     """
     if str(device_map) == _VIRTUAL:
         return None
+    refuse_unused("evidence", because=f"with {shown('device_map')} MAP.toml, whose friction is measured")
     because = f"with {shown('device_map')} MAP.toml, whose tests take their time"
     refuse_unused("seed", "real_time", because=because)
     return Path(device_map)
@@ -297,6 +298,7 @@ def run(
     device_map: Device = "virtual",
     *,
     rig: Annotated[OptionalRigSource, File("The rig; a virtual tribometer takes its friction.", "RIG.toml")] = None,
+    evidence: Evidence = None,
     seed: Seed = 0,
     real_time: Annotated[bool, Parameter("Let a virtual test take its time, and ask its prompts.")] = False,
     dry_run: Annotated[bool, Parameter("Tell what will happen, and touch nothing.")] = False,
@@ -323,7 +325,7 @@ def run(
     path, known = str(file_path(protocol)), optional_rig(rig)
     read = protocol_by_name_or_file(path)
     if dry_run:
-        unused = "seed", "real_time", "anyway", "yes", "no_self_test", "tag", "fact", "out"
+        unused = "evidence", "seed", "real_time", "anyway", "yes", "no_self_test", "tag", "fact", "out"
         refuse_unused(*unused, because=f"with {shown('dry_run')}, which runs nothing")
         return DryRunAnswer(protocol=read, found=dry_runs.dry_run(read, rig=known))
     if not anyway:
@@ -333,7 +335,14 @@ def run(
         refuse_unused("no_self_test", because=f"with {shown('device_map')} virtual, which is not tested so")
     facts = facts_of(fact or {})
     wanted = RunRequest(
-        protocol=read, name=Path(path).stem, rig=known, device_file=file, seed=seed, tags=tag, facts=facts
+        protocol=read,
+        name=Path(path).stem,
+        rig=known,
+        device_file=file,
+        seed=seed,
+        tags=tag,
+        facts=facts,
+        evidence=evidence_of(evidence, known) if file is None else None,
     )
     simulated = _virtual_rig(wanted, real_time=real_time) if file is None else None
     return run_and_record(

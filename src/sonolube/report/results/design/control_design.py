@@ -230,10 +230,10 @@ def posterior_object(found: PosteriorLoop | str, *, tuned_for: str) -> dict[str,
 
 
 def posterior_caveats(found: PosteriorLoop | str, *, feed_forward: str, tuned_for: str) -> list[str]:
-    """A loop that is near instability within the 80 % interval, and a target that may be out of reach."""
+    """Caveats of the prediction, a target that may be out of reach, and a loop near instability within the 80 %."""
     if isinstance(found, str):
         return []
-    caveats = []
+    caveats = list(found.caveats)
     if found.target_chance < _SURE:
         caveats.append(f"the target is within reach with {odds_text(found.target_chance)} alone, by `sonolube predict`")
     if found.gain is None or found.margins[-1].gain_margin >= _MIN_GAIN_MARGIN:
