@@ -28,6 +28,9 @@ Dataset: TypeAlias = "xr.Dataset"
 PREDICTED_RATIO: Final = ("lowest_predicted_ratio", "predicted_friction_ratio", "highest_predicted_ratio")
 """Variables over points that hold the predicted friction ratio: lower end of the 80 % interval, median, upper end."""
 
+PREDICTED_FORCE: Final = ("lowest_predicted_force", "predicted_friction_force", "highest_predicted_force")
+"""Variables over points that hold the predicted friction force: lower end of the 80 % interval, median, upper end."""
+
 _NOTHING: Mapping[str, str] = MappingProxyType({})
 _TEXTS = {
     "status": "Status of the point",

@@ -15,7 +15,7 @@ from sonolube.design.control.friction_characteristic import (
     linear_characteristic,
     predicted_characteristic,
 )
-from sonolube.design.control.predicted_loop import _cautious_tuning, drawn_gains, posterior_loop
+from sonolube.design.control.predicted_loop import _cautious_tuning, drawn_gains, posterior_loop, predicted_margins
 from sonolube.errors import InvalidInput
 from sonolube.prediction.chances import ReductionChances, reduction_chances
 
@@ -123,3 +123,15 @@ def test_the_least_friction_within_reach_is_the_predicted_force_at_the_highest_l
     assert np.all(np.diff(table.friction_force) < 0)
     with raises(InvalidInput, match="the amplitude along the friction characteristic is not known"):
         drawn_forces(rig, replace(PLANT, vibration_amplitude=None), chances)
+
+
+def test_an_unstable_loop_has_no_sensitivity_peak_and_the_others_rise_with_the_gain() -> None:
+    gains = simc_gains(PROCESS)
+    margins = tuple(margins_at_gain(PROCESS, gains, gain=each) for each in (0.5, 1.0, 40.0))
+    found: Any = SimpleNamespace(margins=margins)
+    peaks = predicted_margins(found)["sensitivity_peak"]
+    assert 1 < peaks[0] < peaks[1]
+    assert np.isnan(peaks[2])
+    at = predicted_margins(found)["gain_margin"]
+    assert [at[0], at[2]] == approx([2 * at[1], at[1] / 40])
+    assert predicted_margins(SimpleNamespace(margins=())) == {}  # type: ignore[arg-type]

@@ -1,17 +1,22 @@
 """Task `control` in Python: the numbers of the command, quantities in SI, and refusals."""
 
 from collections.abc import Callable
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pytest import approx, raises
+import pandas
+from pytest import approx, mark, raises
 from tests.same import same
 
 from sonolube.charts import Line, Points, draw_chart
+from sonolube.design.control import lookup_table
+from sonolube.design.control.predicted_loop import predicted_forces
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.execution.compilation import few_points
 from sonolube.tasks.design.control import control
+from sonolube.text.units import format_si
 
 
 def test_quantities_as_text_and_in_si_give_the_answer_of_the_command(
@@ -86,6 +91,54 @@ def test_the_prediction_gives_reach_chance_and_margins_and_a_tuning_for_the_wors
     assert "predicted, 80 %" in [getattr(part, "label", "") for part in chart.panels[0].parts]
 
 
+@mark.parametrize(("name", "lookup"), [("tribometer", "lookup_voltage"), ("welder_flat", "lookup_amplitude")])
+def test_dataset_table_and_page_have_the_interval_of_the_object(name: str, lookup: str, rigs: Path) -> None:
+    found = control(rigs / f"{name}.toml", duration="40ms")
+    told, run = found.json_object(), found.dataset()
+    assert [run[each].attrs["units"] for each in (lookup, "least_friction_force", "gain_margin", "phase_margin")] == [
+        {"lookup_voltage": "V", "lookup_amplitude": "m"}[lookup], "N", "1", "rad",
+    ]  # fmt: skip
+    assert all(run[each].attrs["long_name"] for each in run.variables)
+    assert float(run["target_chance"]) == approx(told["target_chance"], rel=1e-12)
+    for variable, key in (("least_friction_force", "predicted_least_friction"), ("plant_gain", "predicted_gain")):
+        assert three(told[key]) == approx(run[variable].values.tolist(), rel=1e-12)
+    for margin, value in told["predicted_margins"].items():  # margins fall with the gain, the peak rises with it
+        ends = three(value) if margin == "sensitivity_peak" else three(value)[::-1]
+        assert [np.nan if each is None else each for each in ends] == approx(
+            run[margin].values.tolist(), rel=1e-12, nan_ok=True
+        )
+    forces = ["lowest_predicted_force", "predicted_friction_force", "highest_predicted_force"]
+    assert [float(run[each][-1]) for each in forces] == approx(three(told["predicted_least_friction"]), rel=1e-12)
+    table = pandas.read_csv(StringIO(str(found.files()[f"{name}-control.csv"])))
+    assert table.columns[2:].tolist() == [f"{each} [N]" for each in forces]
+    for each in forces:
+        assert table[f"{each} [N]"].values == approx(run[each].values, rel=1e-12)
+    (page,) = found.page().tables
+    assert page.heads[1:] == ("friction by the model", "predicted median", "predicted, 80 %")
+    low, high = told["predicted_least_friction"]["interval_80"]
+    scale = found.study.friction_force
+    assert page.rows[-1][-1] == f"{format_si(low, 'N', scale=scale)} to {format_si(high, 'N', scale=scale)}"
+
+
+def three(value: dict[str, Any]) -> list[float]:
+    """Lower end, median and upper end of a predicted value."""
+    return [value["interval_80"][0], value["median"], value["interval_80"][1]]
+
+
+def test_the_table_at_other_levels_lies_between_those_of_the_model_and_is_empty_beyond_them(rigs: Path) -> None:
+    found = control(rigs / "tribometer.toml", duration="40ms", feed_forward="none")
+    assert not isinstance(found.posterior, str)
+    plant = found.study.plant
+    places = 0.5 * (plant.level[:-1] + plant.level[1:])
+    forces = predicted_forces(found.study, found.posterior, level=[*places, plant.level[-1] + 1.0])
+    assert forces[:, :-1] == approx(0.5 * (found.posterior.force[:, :-1] + found.posterior.force[:, 1:]))
+    assert np.isnan(forces[:, -1]).all()
+    head, first, last = str(found.files()["tribometer-control.csv"]).splitlines()
+    assert float(last.split(",")[3]) == approx(found.posterior.reach[1])
+    assert lookup_table(found.study.controller, predicted=forces[:, -2:]).splitlines()[-1].endswith(",,,")
+    assert (head.count(","), first.count(",")) == (4, 4)
+
+
 def test_own_runs_narrow_reach_and_gain_and_a_feed_forward_by_the_prediction_has_its_median(rigs: Path) -> None:
     path, runs = rigs / "tribometer.toml", rigs.parent / "tribometer-runs.csv"
     before, after = (control(path, duration="40ms", runs=each).json_object() for each in (None, runs))
@@ -107,6 +160,10 @@ def test_a_rig_without_a_prediction_has_its_controller_and_a_reason_and_no_tunin
     found = control(path, duration="40ms")
     assert "soft or floating contact" in found.json_object()["prediction"]["reason"]
     assert found.json_object()["gain_margin"]["value"] == approx(3.13, abs=0.01)
+    assert "soft or floating contact" in found.dataset().attrs["prediction"]
+    assert "predicted_quantile" not in found.dataset().variables
+    assert str(found.files()["pom_on_steel-control.csv"]).splitlines()[0].count(",") == 1
+    assert len(found.page().tables[0].heads) == 2
     with raises(InvalidInput, match="soft or floating contact"):
         control(path, duration="40ms", tuned_for="worst")
     with raises(InvalidInput, match="soft or floating contact"):

@@ -7,13 +7,15 @@ for the commanded quantity.
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import isnan
 from pathlib import Path
 
-from sonolube.checks import require_positive
+from sonolube.checks import Floats, require_positive
 from sonolube.design.control.friction_characteristic import FrictionCharacteristic, linear_characteristic
 from sonolube.design.control.process import PIGains, Process, simc_gains
 from sonolube.design.control.resonance_tracking import FrequencyTracker
 from sonolube.rig import VOLTAGE, CommandedQuantity
+from sonolube.rig.datasets import PREDICTED_FORCE
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -251,28 +253,35 @@ def controller_source(controller: FrictionController, tracker: FrequencyTracker 
     return "\n\n".join(parts) + "\n"
 
 
-def lookup_table(controller: FrictionController) -> str:
+def lookup_table(controller: FrictionController, *, predicted: Floats | None = None) -> str:
     """Lookup table of a controller as CSV: friction force, and peak-to-peak drive voltage or vibration amplitude.
 
     Parameters
     ----------
     controller : FrictionController
+    predicted : ndarray, shape (3, n), optional
+        Lower end of the 80 % interval, median and upper end of the predicted friction force at each point, in N; NaN
+        where it is not known.
 
     Returns
     -------
     str
-        A line of names with units, then the points by decreasing friction force; interpolate linearly.
+        A line of names with units, then the points by decreasing friction force; interpolate linearly. Cells of what is
+        not known are empty.
 
     See Also
     --------
     controller_source
     """
-    rows = [
-        f"{controller.intrinsic_friction_force - reduction!r},{level!r}"
-        for reduction, level in zip(controller.force_reduction, controller.level, strict=True)
-    ]
     quantity = controller.quantity
-    return "\n".join([f"friction_force [N],{quantity.name} [{quantity.unit}]", *rows]) + "\n"
+    columns: dict[str, Sequence[float]] = {
+        "friction_force [N]": [controller.intrinsic_friction_force - each for each in controller.force_reduction],
+        f"{quantity.name} [{quantity.unit}]": controller.level,
+    }
+    if predicted is not None:
+        columns |= {f"{name} [N]": row.tolist() for name, row in zip(PREDICTED_FORCE, predicted, strict=True)}
+    rows = [",".join("" if isnan(each) else repr(each) for each in row) for row in zip(*columns.values(), strict=True)]
+    return "\n".join([",".join(columns), *rows]) + "\n"
 
 
 def _unit(quantity: CommandedQuantity) -> str:

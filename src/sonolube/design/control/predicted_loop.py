@@ -9,19 +9,31 @@ All margins fall with the gain. A tuning whose time constants of closed loop and
 has the other's loop at the gain g: Skogestad's rule sets the proportional gain inversely to their sum.
 """
 
+import math
 from dataclasses import dataclass, replace
-from typing import Final
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from sonolube.charts import Band, Line, Part
 from sonolube.checks import Floats
 from sonolube.design.control.control_design import ControlDesign
 from sonolube.design.control.controller import FrictionController
-from sonolube.design.control.friction_characteristic import FrictionCharacteristic, drawn_forces
+from sonolube.design.control.friction_characteristic import FrictionCharacteristic, drawn_forces, friction_at_level
 from sonolube.design.control.process import PIGains, Process, StabilityMargins, simc_gains, stability_margins
 from sonolube.prediction.chances import INTERVAL, ReductionChances
-from sonolube.rig import Rig
+from sonolube.rig import AMPLITUDE, VOLTAGE, Rig
+from sonolube.rig.datasets import PREDICTED_FORCE, labelled, labels
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+MARGINS: Final = ("gain_margin", "phase_margin", "delay_margin", "sensitivity_peak")
+"""Fields of `StabilityMargins`."""
+
+_LOOKUP = MappingProxyType({VOLTAGE.name: "lookup_voltage", AMPLITUDE.name: "lookup_amplitude"})
 
 MIN_REACHING: Final = 0.01
 """Share of the draws with the target within reach below which no gain of the loop is stated."""
@@ -60,7 +72,7 @@ class PosteriorLoop:
     force : ndarray, shape (3, n)
         Ends of the 80 % interval and median of the friction force at each level of the plant, in N.
     target_chance : float
-        That the target lies between the friction at the highest level and that without vibration.
+        That the target lies between the friction at the highest level and that without vibration. []
     gain : ndarray, shape (3,), or None
         Ends of the 80 % interval of the gain and its median, over the draws that reach the target; None where fewer
         than 1 % do.
@@ -86,6 +98,77 @@ class PosteriorLoop:
         """Lower end, median and upper end of the least friction force within reach, in N."""
         low, median, high = (float(each) for each in self.force[:, -1])
         return low, median, high
+
+
+def predicted_margins(found: PosteriorLoop) -> dict[str, tuple[float, float, float]]:
+    """Each of `MARGINS` at the gains of a prediction, from the lowest to the highest; empty without gains.
+
+    An unstable loop has no sensitivity peak: NaN.
+    """
+    if not found.margins:
+        return {}
+    rows = [
+        [math.nan if name == "sensitivity_peak" and each.gain_margin < 1 else getattr(each, name) for name in MARGINS]
+        for each in found.margins
+    ]
+    return {name: (low, median, high) for name, low, median, high in zip(MARGINS, *rows, strict=True)}
+
+
+def predicted_forces(study: ControlDesign, found: PosteriorLoop, *, level: ArrayLike) -> Floats:
+    """Ends of the 80 % interval and median of the friction force at levels, linear between those of the plant, in N.
+
+    Parameters
+    ----------
+    study : ControlDesign
+    found : PosteriorLoop
+        Of the design.
+    level : array_like, shape (n,)
+        Peak-to-peak voltages, or amplitudes, in V or m.
+
+    Returns
+    -------
+    ndarray, shape (3, n)
+        NaN beyond the highest level of the plant.
+    """
+    return np.array([np.interp(level, study.plant.level, row, right=np.nan) for row in found.force])
+
+
+def with_posterior(run: "xr.Dataset", study: ControlDesign, found: PosteriorLoop | str) -> "xr.Dataset":
+    """Dataset of a closed-loop run with lookup table, friction within reach, gain and margins by the prediction.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        By `control_dataset`.
+    study : ControlDesign
+    found : PosteriorLoop or str
+        By `posterior_loop`, or why there is no prediction.
+
+    Returns
+    -------
+    xarray.Dataset
+        Lookup table over its voltage or amplitude; of a prediction also its forces there, and over
+        `predicted_quantile`, 10, 50 and 90 %, the least friction within reach, the gain of the loop, and its margins at
+        that gain.
+    """
+    controller = study.controller
+    along = _LOOKUP[study.plant.quantity.name]
+    level = np.array(controller.level)
+    table = {"model_friction_force": friction_at_level(study.plant, level=level)}
+    if isinstance(found, str):
+        told = labelled({along: level, **table}, along=along, title=run.title).dataset()
+        return run.merge(told).assign_attrs(run.attrs, prediction=found)
+    table |= dict(zip(PREDICTED_FORCE, predicted_forces(study, found, level=level), strict=True))
+    within = {"predicted_quantile": np.array(INTERVAL), "least_friction_force": found.force[:, -1]}
+    if found.gain is not None:
+        within |= {"plant_gain": found.gain, **{name: np.array(row) for name, row in predicted_margins(found).items()}}
+    merged = run
+    for values, axis in (({along: level, **table}, along), (within, "predicted_quantile")):
+        merged = merged.merge(labelled(values, along=axis, title=run.title).dataset())
+    merged["target_chance"] = ((), found.target_chance, labels("target_chance"))
+    for name in set(MARGINS) & set(within):
+        merged[name].attrs["long_name"] += " at this quantile of the gain"
+    return merged.assign_attrs(run.attrs, prediction_runs=found.runs)
 
 
 def drawn_gains(

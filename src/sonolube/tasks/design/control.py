@@ -10,10 +10,11 @@ from math import inf
 from typing import Annotated, Any, Literal, Unpack
 
 from sonolube.charts import Part
+from sonolube.checks import Floats
 from sonolube.design import control as loops
 from sonolube.design.control import stick_slip as figures
 from sonolube.design.control.control_design import control_dataset
-from sonolube.design.control.predicted_loop import predicted_force_parts
+from sonolube.design.control.predicted_loop import predicted_force_parts, predicted_forces, with_posterior
 from sonolube.design.control.rejection import rejection_chart
 from sonolube.design.control.stick_slip import StickSlipSuppression, stick_slip_suppression
 from sonolube.errors import InvalidInput, OutsideRange, SonolubeError
@@ -210,9 +211,11 @@ class ControlAnswer(Answer):
         controller, title = self.study.controller, self.rig.title
         origin = "; ".join([title, *self.rig.changes, f"made by sonolube {__version__}"])
         return {
-            f"{self._name}.nc": control_dataset(self.study, title=f"Friction control of {title}"),
+            f"{self._name}.nc": with_posterior(
+                control_dataset(self.study, title=f"Friction control of {title}"), self.study, self.posterior
+            ),
             f"{self._name}.c": loops.controller_source(controller, self.study.tracker, title=origin),
-            f"{self._name}.csv": loops.lookup_table(controller),
+            f"{self._name}.csv": loops.lookup_table(controller, predicted=self._predicted_forces()),
         }
 
     def page(self) -> Page:
@@ -222,7 +225,7 @@ class ControlAnswer(Answer):
             title=f"Friction control of {self.rig.title}",
             settings=rig_settings(self.rig),
             facts=self._facts(),
-            tables=[results.lookup_table(self.study)],
+            tables=[results.lookup_table(self.study, self.posterior)],
         )
 
     def _facts(self) -> list[tuple[str, str]]:
@@ -233,6 +236,12 @@ class ControlAnswer(Answer):
     def _predicted_parts(self) -> tuple[Part, ...]:
         """Predicted friction over the level, where there is a prediction."""
         return () if isinstance(self.posterior, str) else predicted_force_parts(self.study, self.posterior)
+
+    def _predicted_forces(self) -> Floats | None:
+        """Predicted friction force at the points of the lookup table, where there is a prediction."""
+        if isinstance(self.posterior, str):
+            return None
+        return predicted_forces(self.study, self.posterior, level=self.study.controller.level)
 
     @property
     def _name(self) -> str:

@@ -125,9 +125,9 @@ def test_a_commanded_amplitude_is_the_set_point_of_a_generator() -> None:
     assert dict(results.facts(SETTINGS, held, rejection(), None))["drive"] == (
         "amplitude up to 2.5 um zero to peak, as the set point of a generator"
     )
-    table = results.lookup_table(held)
+    table = results.lookup_table(held, "no prediction")
     assert table.title == "Friction by the rig's model, at 5 of the map's 5 amplitudes"
-    assert table.heads == ("amplitude, zero to peak", "friction")
+    assert table.heads == ("amplitude, zero to peak", "friction by the model")
     assert table.rows[1] == ("750 nm", "2.5 N")
     assert any("the rig has no voltage" in each for each in results.caveats(RIG, held))
     found = results.control_object(RIG, SETTINGS, held, rejection(), None)
@@ -137,7 +137,7 @@ def test_a_commanded_amplitude_is_the_set_point_of_a_generator() -> None:
 
 
 def test_the_lookup_table_has_a_dozen_rows_with_both_ends() -> None:
-    table = results.lookup_table(design())
+    table = results.lookup_table(design(), "no prediction")
     assert table.title == "Friction by the rig's model, at 12 of the map's 61 voltages"
     assert len(table.rows) == 12
     assert (table.rows[0], table.rows[-1]) == (("0 V", "3 N"), ("30 V", "500 mN"))

@@ -1,6 +1,6 @@
 """Friction control of a rig: controller, margins, step response, energy and stick-slip as facts, JSON and a table."""
 
-from math import degrees
+from math import degrees, isnan
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from sonolube.design.control import (
     stick_slip as holder,
 )
 from sonolube.design.control.control_design import final_state, lost_resonance
+from sonolube.design.control.predicted_loop import MARGINS, predicted_margins
 from sonolube.design.control.stick_slip import StickSlipSuppression
 from sonolube.prediction.chances import odds_text
 from sonolube.report.page import PageTable
@@ -29,7 +30,6 @@ _NO_VOLTAGE = (
     "the rig has no voltage: resonance, its tracking and warming, and electrical energy are those of the generator that"
     " holds the amplitude, and are not computed"
 )
-_MARGINS = ("gain_margin", "phase_margin", "delay_margin", "sensitivity_peak")
 _SURE = 0.8  # chance of the target, below which it is said
 _TABLE_ROWS = 12  # of the lookup table on the page
 
@@ -194,7 +194,7 @@ def posterior_summary(study: ControlDesign, found: PosteriorLoop | str) -> list[
 
 def _reach_text(study: ControlDesign, found: PosteriorLoop) -> str:
     """Median and 80 % interval of the least friction force within reach."""
-    low, median, high = (format_si(each, "N", scale=study.friction_force) for each in found.reach)
+    low, median, high = (_force(study, each) for each in found.reach)
     return f"{median}, {low} to {high} (80 %)"
 
 
@@ -212,21 +212,33 @@ def posterior_object(found: PosteriorLoop | str, *, tuned_for: str) -> dict[str,
     if found.gain is None or found.cautious is None:
         return content
     low, median, high = map(float, found.gain)
-    by_gain = {name: [float(getattr(each, name)) for each in found.margins] for name in _MARGINS}
     cautious = found.cautious
     return content | {
         "predicted_gain": {"median": median, "interval_80": [low, high]},
         "predicted_margins": {
-            name: {"median": at[1], "interval_80": sorted([at[0], at[2]]), "unit": quantity(name).unit}
-            for name, at in by_gain.items()
+            name: {"median": _known(at[1]), "interval_80": _ends(at), "unit": quantity(name).unit}
+            for name, at in predicted_margins(found).items()
         },
         "worst_of_80": {
             **si({"closed_loop_time": cautious.closed_loop_time}),
             **si(picked(cautious.gains, "proportional_gain", "integral_time")),
-            **si(picked(cautious.margins, *_MARGINS)),
+            **si(picked(cautious.margins, *MARGINS)),
             "bandwidth_given_up": cautious.given_up,
         },
     }
+
+
+def _ends(at: tuple[float, float, float]) -> list[float | None]:
+    """Lower and upper end of a margin; None for the peak of an unstable loop, which comes last."""
+    return [
+        *sorted(each for each in (at[0], at[2]) if not isnan(each)),
+        *[None for each in (at[0], at[2]) if isnan(each)],
+    ]
+
+
+def _known(value: float) -> float | None:
+    """Value of a margin; None where there is none."""
+    return None if isnan(value) else value
 
 
 def posterior_caveats(found: PosteriorLoop | str, *, feed_forward: str, tuned_for: str) -> list[str]:
@@ -263,16 +275,31 @@ def _motions(suppression: StickSlipSuppression) -> list[tuple[str, StickSlipMoti
     return [("without", suppression.still, without), ("with", suppression.vibrating, within)]
 
 
-def lookup_table(study: ControlDesign) -> PageTable:
-    """Map from voltage or amplitude to friction at about a dozen points."""
+def lookup_table(study: ControlDesign, found: PosteriorLoop | str) -> PageTable:
+    """Map from voltage or amplitude to friction at about a dozen points, as predicted too where it is."""
     plant, quantity = study.plant, study.plant.quantity
     places = np.unique(np.linspace(0, plant.friction_force.size - 1, _TABLE_ROWS).round().astype(int))
-    rows = zip(plant.level[places], plant.friction_force[places], strict=True)
+    columns = [
+        [format_si(float(level), quantity.unit) for level in plant.level[places]],
+        [format_si(float(force), "N") for force in plant.friction_force[places]],
+    ]
+    heads = [f"{quantity.word}, {quantity.qualifier}", "friction by the model"]
+    if not isinstance(found, str):
+        low, median, high = ([_force(study, float(force)) for force in row[places]] for row in found.force)
+        columns += [median, [f"{one} to {other}" for one, other in zip(low, high, strict=True)]]
+        heads += ["predicted median", "predicted, 80 %"]
+    predicted = "" if isinstance(found, str) else " and as predicted,"
     return PageTable(
-        title=f"Friction by the rig's model, at {places.size} of the map's {plant.level.size} {quantity.word}s",
-        heads=(f"{quantity.word}, {quantity.qualifier}", "friction"),
-        rows=tuple((format_si(float(level), quantity.unit), format_si(float(force), "N")) for level, force in rows),
+        title=f"Friction by the rig's model,{predicted} at {places.size} of the map's {plant.level.size}"
+        f" {quantity.word}s",
+        heads=tuple(heads),
+        rows=tuple(zip(*columns, strict=True)),
     )
+
+
+def _force(study: ControlDesign, force: float) -> str:
+    """Friction force to the digits of the target."""
+    return format_si(force, "N", scale=study.friction_force)
 
 
 def _text(name: str, value: float) -> str:
