@@ -230,10 +230,8 @@ def posterior_object(found: PosteriorLoop | str, *, tuned_for: str) -> dict[str,
 
 def _ends(at: tuple[float, float, float]) -> list[float | None]:
     """Lower and upper end of a margin; None for the peak of an unstable loop, which comes last."""
-    return [
-        *sorted(each for each in (at[0], at[2]) if not isnan(each)),
-        *[None for each in (at[0], at[2]) if isnan(each)],
-    ]
+    known = sorted(each for each in (at[0], at[2]) if not isnan(each))
+    return [*known, *[None] * (2 - len(known))]
 
 
 def _known(value: float) -> float | None:
