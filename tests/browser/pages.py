@@ -80,6 +80,14 @@ def show(page: Page, workbench: Served, name: str, changes: Mapping[str, str], *
     at_rest(page)
 
 
+def go(page: Page, where: str) -> None:
+    """Go to a page by its door, or by the menu of the others."""
+    door = page.get_by_test_id(f"page:{where}")
+    if not door.is_visible():
+        page.get_by_test_id("more").click()
+    door.click()
+
+
 def _quoted(text: str) -> str:
     """Text as the page writes it in its address."""
     return quote(text, safe="!'()*-._~:/").replace("%20", "+")

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from PIL import Image
 from playwright.sync_api import Browser, Page, expect
-from tests.browser.pages import LOAD, VOLTS, at_rest, opened, show, started_browser
+from tests.browser.pages import LOAD, VOLTS, at_rest, go, opened, show, started_browser
 from tests.browser.recordings import write_recordings
 from tests.browser.scans import write_groove
 from tests.browser.workbench import Served, served
@@ -63,7 +63,7 @@ def _pages(page: Page, workbench: Served) -> Shots:
     page.get_by_test_id("start-job").click()
     page.get_by_test_id("cancel-job").wait_for()
     yield "dissertation", page.screenshot()
-    page.get_by_test_id("page:jobs").click()
+    go(page, "jobs")
     page.get_by_test_id("open-job").click()
     page.get_by_test_id("job-result").wait_for()
     yield "jobs", page.screenshot()

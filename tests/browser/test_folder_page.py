@@ -6,7 +6,7 @@ from shutil import copy
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
-from tests.browser.pages import at_rest, opened
+from tests.browser.pages import at_rest, go, opened
 from tests.browser.workbench import Served, served
 from tests.chromium import CHROMIUM
 
@@ -60,7 +60,7 @@ def test_the_table_is_that_of_the_folder_and_every_change_is_in_its_file(page: P
     at_rest(page)
     assert used(bench) == [True] * 4
 
-    page.get_by_test_id("page:explore").click()
+    go(page, "explore")
     at_rest(page)
     page.get_by_test_id("page:predict").click()
     page.get_by_test_id("remove-run").nth(3).click()

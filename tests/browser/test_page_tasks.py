@@ -27,6 +27,8 @@ def phone(browser: Browser, workbench: Served) -> Iterator[Page]:
 
 def press(page: Page, test: str, key: str = "Enter") -> None:
     """Reach an element by the tab key, and press a key on it."""
+    if test.startswith("page:") and not page.get_by_test_id(test).is_visible():
+        press(page, "more")
     reach(page, test)
     page.keyboard.press(key)
 

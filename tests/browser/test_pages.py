@@ -7,7 +7,21 @@ from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
-from tests.browser.pages import EXAMPLES, LOAD, RIGS, SPEED, VOLTS, at_rest, enter, numbers, opened, show
+from tests.browser.pages import (
+    EXAMPLES,
+    LOAD,
+    RIGS,
+    SPEED,
+    VOLTS,
+    at_rest,
+    enter,
+    go,
+    in_use,
+    numbers,
+    opened,
+    reach,
+    show,
+)
 from tests.browser.workbench import Served, served
 from tests.chromium import CHROMIUM
 
@@ -63,12 +77,36 @@ def test_a_link_and_a_reload_show_the_same_screen(page: Page, browser: Browser, 
 
 
 def test_back_and_forward_lead_through_the_pages(page: Page) -> None:
-    page.get_by_test_id("page:explore").click()
+    go(page, "explore")
     expect(page.get_by_test_id("page:explore")).to_have_attribute("aria-current", "page")
     page.go_back()
     expect(page.get_by_test_id("page:predict")).to_have_attribute("aria-current", "page")
     page.go_forward()
     expect(page.get_by_test_id("page:explore")).to_have_attribute("aria-current", "page")
+
+
+def test_four_doors_are_always_seen_and_the_other_pages_stand_in_a_menu(page: Page) -> None:
+    for width in (1280, 390):
+        page.set_viewport_size({"width": width, "height": 844})
+        page.get_by_test_id("page:predict").click()
+        expect(page.locator(".doors a")).to_have_text(["Predict", "Measure", "Design", "Run"])
+        go(page, "modes")
+        expect(page.locator(".doors [aria-current=page]")).to_have_text("Modes")
+        expect(page.get_by_label("More pages")).to_be_hidden()
+
+
+def test_the_menu_of_pages_is_opened_and_closed_by_keys(page: Page) -> None:
+    reach(page, "more")
+    page.keyboard.press("Enter")
+    expect(page.get_by_label("More pages").get_by_role("link")).to_have_count(5)
+    reach(page, "page:jobs")
+    page.keyboard.press("Escape")
+    expect(page.get_by_label("More pages")).to_be_hidden()
+    assert in_use(page) == "more"
+    page.keyboard.press("Enter")
+    reach(page, "page:jobs")
+    page.keyboard.press("Enter")
+    expect(page.locator(".doors [aria-current=page]")).to_have_text("Jobs")
 
 
 TYPED = ("", "3 kg", "5 V", "1e999 N", "-1 N", "NaN", "\u202e3 N", "<img onerror=alert(1)>", "9" * 10_000)
@@ -232,7 +270,7 @@ def test_jobs_and_runs_stand_in_one_list(page: Page) -> None:
         {task: 'contact', arguments: {rig}, label: 'contact of the tribometer'})})""",
         {"name": "tribometer", "changes": {LOAD: "4 N"}},
     )
-    page.get_by_test_id("page:jobs").click()
+    go(page, "jobs")
     expect(page.locator("#main h2")).to_have_text(["contact of the tribometer", "Sweep"])  # the latest first
     expect(page.get_by_test_id("of")).to_have_count(2)  # once the job runs
     of_job, of_run = page.get_by_test_id("of").all()
@@ -257,13 +295,13 @@ def test_a_page_is_found_as_it_was_left_with_the_runs_of_its_rig(page: Page) -> 
     page.get_by_test_id("remove-runs").wait_for()
     at_rest(page)
     page.get_by_test_id("keep").click()
-    page.get_by_test_id("page:explore").click()
+    go(page, "explore")
     page.get_by_test_id("study:map").check()
     at_rest(page)
     expect(page.get_by_test_id("remove-runs")).to_be_visible()
-    page.get_by_test_id("page:jobs").click()
+    go(page, "jobs")
     page.reload()
-    page.get_by_test_id("page:explore").click()
+    go(page, "explore")
     expect(page.get_by_test_id("study:map")).to_be_checked()
     page.get_by_test_id("page:predict").click()
     expect(page.get_by_test_id("differences")).to_be_visible()
@@ -293,11 +331,11 @@ def test_every_page_is_led_to_in_a_low_head(page: Page) -> None:
     for width in (320, 390, 768, 1000, 1200, 1600):
         page.set_viewport_size({"width": width, "height": 800})
         page.get_by_test_id("page:predict").click()
-        page.get_by_test_id("page:new").click()
+        go(page, "new")
         page.locator('[data-test="page:new"][aria-current=page]').wait_for()
-        links, last, head = (page.locator(place).bounding_box() for place in (".pages", ".pages a:last-child", ".head"))
+        links, last, head = (page.locator(place).bounding_box() for place in (".pages", ".is-more", ".head"))
         assert links is not None
         assert last is not None
         assert head is not None
         assert links["x"] <= last["x"] <= last["x"] + last["width"] <= links["x"] + links["width"] + 1, width
-        assert head["height"] <= (96 if width < 700 else 84 if width < 1151 else 57), width
+        assert head["height"] <= (96 if width < 700 else 84 if width < 861 else 57), width

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser, expect
-from tests.browser.pages import PROXIED, VOLTS, at_rest, enter, numbers, opened, saved
+from tests.browser.pages import PROXIED, VOLTS, at_rest, enter, go, numbers, opened, saved
 from tests.browser.workbench import Served, served
 from tests.chromium import CHROMIUM
 
@@ -88,11 +88,11 @@ def test_the_workbench_is_used_below_a_prefix(
             page.reload()
             at_rest(page)
             assert numbers(page) == shown
-            page.get_by_test_id("page:explore").click()
+            go(page, "explore")
             page.get_by_test_id("study:start").check()
             page.get_by_test_id("start-job").click()
             page.get_by_test_id("study").wait_for()
-            page.get_by_test_id("page:jobs").click()
+            go(page, "jobs")
             expect(page.get_by_test_id("jobs").locator("li")).to_have_count(1)
             expect(page.get_by_test_id("job-state")).to_have_text("done")
             page.get_by_test_id("open-job").click()

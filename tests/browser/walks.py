@@ -39,6 +39,8 @@ class Mouse:
 
     def press(self, test: str) -> None:
         """Press a button or link, or tick a checkbox."""
+        if test.startswith("page:") and not self.page.get_by_test_id(test).is_visible():
+            self.press("more")
         self.page.get_by_test_id(test).first.click()
 
     def write(self, test: str, text: str, *, rests: bool = True) -> None:
@@ -89,6 +91,8 @@ class Keyboard(Mouse):
         assert self.page.evaluate(_SHOWN), f"the focus is not seen at {in_use(self.page)}"
 
     def press(self, test: str, key: str = "") -> None:
+        if test.startswith("page:") and not self.page.get_by_test_id(test).is_visible():
+            self.press("more")
         self.reach(test)
         is_box = self.page.evaluate("['checkbox', 'file'].includes(document.activeElement.type)")
         self.page.keyboard.press(key or ("Space" if is_box else "Enter"))

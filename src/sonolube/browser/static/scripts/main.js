@@ -2,8 +2,20 @@
 import {html, render, useEffect, useErrorBoundary, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {ask, enter, useConnection} from './api.js';
 import {followFolder, openFolder} from './folder-runs.js';
-import {Button, capital, Loading, Refusal, Select, Sheet, useEvents, useInView, Warning} from './parts.js';
-import {addressAsLeft, addressOf, followAddress, PAGES, redo, stored, undo, useApp} from './state.js';
+import {
+  Button,
+  capital,
+  Caret,
+  Loading,
+  Refusal,
+  Select,
+  Sheet,
+  useEvents,
+  useInView,
+  useMenu,
+  Warning,
+} from './parts.js';
+import {addressAsLeft, addressOf, DOORS, followAddress, PAGES, redo, stored, undo, useApp} from './state.js';
 import {TakeAway} from './take-away.js';
 
 /** Pages with styles of their own, in `pages/` beside the scripts. */
@@ -23,6 +35,15 @@ function read(page, path = `./pages/${page === 'new' ? 'new-rig' : page}.js`) {
   return styles.then(() => module);
 }
 
+/** Pages below "More", with what they are for. @type {Record<string, string>} */
+const BESIDE = {
+  new: 'a first rig from questions',
+  explore: 'studies and maps of the rig',
+  modes: 'horns and parts',
+  jobs: 'computations and runs',
+  dissertation: 'its claims, judged',
+};
+
 const THEMES = ['system', 'light', 'dark'];
 const THEME_KEY = 'sonolube-theme';
 const storedTheme = () => stored('localStorage', THEME_KEY) ?? THEMES[0];
@@ -38,7 +59,7 @@ const drawAgain = () => dispatchEvent(new Event('themechange')); // what is draw
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', drawAgain);
 
 const ThemeSwitch = () => html`<label class="theme">
-  <span class="hidden">Theme</span>
+  <span class="grow">Theme</span>
   <${Select}
     choices=${THEMES.map((each) => [each, capital(each)])}
     value=${document.documentElement.dataset.theme}
@@ -55,25 +76,58 @@ function Head() {
   return html`<header class="head">
     <a class="skip" href="#answer" onClick=${skip}>Skip to the answer</a>
     <a class="name" href=${addressOf('predict')} data-test="home">sonolube</a>
-    <nav class="pages" aria-label="Pages" ref=${links}>
-      ${Object.entries(PAGES).map(
-        ([page, title]) => html`<a
-          key=${page}
-          href=${addressAsLeft(page)}
-          data-test=${`page:${page}`}
-          aria-current=${state.page === page ? 'page' : undefined}
-        >
-          ${title}
-        </a>`,
-      )}
+    <nav class="pages" aria-label="Pages">
+      <div class="doors" ref=${links}>
+        ${Object.entries(DOORS).map(([page, title]) => html`<${Door} key=${page} page=${page} title=${title} />`)}
+        ${!(state.page in DOORS) && html`<${Door} page=${state.page} title=${PAGES[state.page]} />`}
+      </div>
+      <${More} page=${state.page} />
     </nav>
     <div class="tools">
       <${Step} name="Undo" keys="Ctrl+Z" step=${undo} can=${canUndo} />
       <${Step} name="Redo" keys="Ctrl+Shift+Z" step=${redo} can=${canRedo} kind="mirrored" />
       <${TakeAway} />
-      <${ThemeSwitch} />
     </div>
   </header>`;
+}
+
+/**
+ * Link to a page as it was left.
+ * @param {{page: string, title: string, kind?: string, children?: any}} props
+ */
+const Door = ({page, title, kind = 'door', children}) => html`<a
+  class=${kind}
+  href=${addressAsLeft(page)}
+  data-test=${`page:${page}`}
+  aria-current=${useApp().state.page === page ? 'page' : undefined}
+>
+  ${title}${children}
+</a>`;
+
+/**
+ * Menu of the pages without a door, and the theme.
+ * @param {{page: string}} props
+ */
+function More({page}) {
+  const {place, isOpen, toggle} = useMenu(page);
+  return html`<div class="take is-more" ref=${place}>
+    <${Button} kind="door" aria-expanded=${isOpen} aria-haspopup="true" onClick=${toggle} data-test="more">
+      More <${Caret} />
+    <//>
+    ${
+      isOpen &&
+      html`<div class="menu" role="group" aria-label="More pages">
+        ${Object.entries(BESIDE)
+          .filter(([each]) => each !== page)
+          .map(
+            ([each, note]) => html`<${Door} key=${each} page=${each} title=${PAGES[each]} kind="menu-item">
+              <span class="hint">${note}</span>
+            <//>`,
+          )}
+        <${ThemeSwitch} />
+      </div>`
+    }
+  </div>`;
 }
 
 /** @param {{name: string, keys: string, step: () => void, can: boolean, kind?: string}} props */

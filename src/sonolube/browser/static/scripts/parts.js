@@ -129,6 +129,28 @@ export function useInView(chosen) {
 }
 
 /**
+ * Menu below a button: `place` is for the element around both; it closes by Escape, by a press elsewhere and where
+ * `shown` changes.
+ * @param {any} [shown]
+ */
+export function useMenu(shown) {
+  const [isOpen, setOpen] = useState(false);
+  const place = useRef(null);
+  useEvents(['keydown', 'pointerdown'], (event) => {
+    const isEscape = event.key === 'Escape' && place.current.contains(document.activeElement);
+    if (isEscape) place.current.querySelector('button').focus();
+    if (event.key ? isEscape : !place.current.contains(event.target)) setOpen(false);
+  });
+  useEffect(() => setOpen(false), [shown]);
+  return {place, isOpen, toggle: () => setOpen(!isOpen)};
+}
+
+/** Sign of a button that opens a menu. */
+export const Caret = () => html`<svg viewBox="0 0 10 6" width="10" height="6" class="caret" aria-hidden="true">
+  <path d="M1 1 5 5 9 1" fill="none" stroke="currentColor" stroke-width="1.6" stroke-linecap="round" />
+</svg>`;
+
+/**
  * Take files that are dropped anywhere on the page; true while some are held over it.
  * @param {(files: File[]) => void} onFiles
  * @returns {boolean}

@@ -23,6 +23,8 @@ export const PAGES = {
   dissertation: 'Dissertation',
   new: 'New rig',
 };
+/** Pages that the head shows at all times, by what is done on them. @type {Texts} */
+export const DOORS = {predict: 'Predict', data: 'Measure', design: 'Design', lab: 'Run'};
 const STEPS = 100; // of undo
 const LONGEST_TEXT = 8192; // characters of a compressed rig file that a link holds
 const KEPT_PREFIX = 'kept-';

@@ -1,7 +1,7 @@
 /** What a page gives to take away: the link, and files that give the numbers on screen. */
-import {html, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
+import {html, useState} from '../vendor/htm-preact-3.1.1.js';
 import {ask} from './api.js';
-import {Button, useEvents} from './parts.js';
+import {Button, Caret, useMenu} from './parts.js';
 
 const FORMS = [
   ['command', 'Command line', 'copy'],
@@ -46,15 +46,9 @@ export function save({name, kind, text, base64}) {
 
 /** Menu "Take away". */
 export function TakeAway() {
-  const [isOpen, setOpen] = useState(false);
   const [shown, setShown] = useState(null);
   const [note, setNote] = useState('');
-  const place = useRef(null);
-  useEvents(['keydown', 'pointerdown'], (event) => {
-    const isEscape = event.key === 'Escape' && place.current.contains(document.activeElement);
-    if (isEscape) place.current.querySelector('button').focus();
-    if (event.key ? isEscape : !place.current.contains(event.target)) setOpen(false);
-  });
+  const {place, isOpen, toggle} = useMenu();
   /** @param {string} what @param {string} text */
   const copy = async (what, text) => {
     setShown({what, text});
@@ -76,13 +70,15 @@ export function TakeAway() {
       setNote(`${content.name}: saved.`);
     }
   };
-  const toggle = () => {
-    setOpen(!isOpen);
+  const open = () => {
+    toggle();
     setNote('');
     setShown(null);
   };
   return html`<div class="take" ref=${place}>
-    <${Button} aria-expanded=${isOpen} aria-haspopup="true" onClick=${toggle} data-test="take">Take away<//>
+    <${Button} aria-expanded=${isOpen} aria-haspopup="true" onClick=${open} data-test="take">
+      Take away <${Caret} />
+    <//>
     ${
       isOpen &&
       html`<div class="menu" role="group" aria-label="Take away">
