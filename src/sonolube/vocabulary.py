@@ -31,6 +31,8 @@ class Quantity:
         Technical term for the quantity, as written along an axis.
     text_unit : str
         Unit in text and figures where it is not the SI unit with a prefix, such as mm3/m of a wear rate; else empty.
+    customary_unit : str
+        Unit of a number that a person types without one, such as um of an amplitude; empty where none is customary.
     also : tuple of str
         Other headings of its columns in tables of measurements, in English and German; of no other quantity.
     """
@@ -40,6 +42,7 @@ class Quantity:
     unit: str
     meaning: str
     text_unit: str = ""
+    customary_unit: str = ""
     also: tuple[str, ...] = ()
 
     @property

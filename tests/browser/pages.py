@@ -13,6 +13,7 @@ from tests.chromium import CHROMIUM, FLAGS
 EXAMPLES = Path(__file__).parents[2] / "examples"
 RIGS = EXAMPLES / "rigs"
 VOLTS, SPEED, LOAD = "drive.voltage_peak_to_peak", "sliding.sliding_speed", "contact.normal_load"
+AMPLITUDE = "vibration.vibration_amplitude"
 PROXIED = "lab.example"
 """Name of a host that the browser finds on this computer, as if a proxy had it."""
 

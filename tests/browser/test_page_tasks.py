@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
-from tests.browser.pages import LOAD, SPEED, VOLTS, at_rest, numbers, opened, reach, show
+from tests.browser.pages import AMPLITUDE, LOAD, SPEED, VOLTS, at_rest, go, numbers, opened, reach, show
 from tests.browser.pictures import NEW
 from tests.browser.workbench import Served
 from tests.chromium import CHROMIUM
@@ -115,6 +115,40 @@ def test_a_new_rig_by_keyboard_alone(page: Page) -> None:
     at_rest(page)
     expect(page.get_by_test_id(f"field:{LOAD}")).to_have_value("5 N")
     assert len(numbers(page)) >= 5
+
+
+BARE = {"pin": "brass", "disc": "steel", "load": "5", "speed": "0,1", "frequency": "20", "amplitude": "2,5"}
+READ = {"load": "5 N", "speed": "0.1 m/s", "frequency": "20 kHz", "amplitude": "2.5 µm"}
+
+
+def test_bare_numbers_of_a_new_rig_take_the_customary_unit_which_is_shown_while_typing(page: Page) -> None:
+    go(page, "new")
+    for name, text in BARE.items():
+        reach(page, f"new:{name}")
+        page.keyboard.type(text)
+        if name in READ:
+            expect(page.get_by_test_id(f"read:{name}")).to_have_text(READ[name])
+    page.keyboard.press("Tab")
+    expect(page.get_by_test_id("made").locator("h2")).to_have_text("Brass pin on steel disc")
+    page.get_by_test_id("new:amplitude").fill("2 µm")
+    page.get_by_test_id("use-rig").click()  # while the rig with this amplitude is being made
+    page.locator('[data-test="page:predict"][aria-current=page]').wait_for()
+    at_rest(page)
+    expect(page.get_by_test_id(f"field:{AMPLITUDE}")).to_have_value("2 um")
+
+
+def test_a_refused_answer_of_a_new_rig_leaves_no_rig_to_predict_with(page: Page, workbench: Served) -> None:
+    page.goto(f"{workbench.address}#/new?" + "&".join(f"{name}={text}" for name, text in NEW.items()))
+    expect(page.get_by_test_id("use-rig")).to_be_enabled()
+    page.get_by_test_id("new:load").fill("5 kg")
+    page.keyboard.press("Tab")
+    expect(page.get_by_test_id("refusal:load")).to_be_visible()
+    expect(page.get_by_test_id("read:load")).to_be_hidden()
+    expect(page.get_by_test_id("use-rig")).to_be_disabled()
+    page.get_by_test_id("new:load").fill("6")
+    page.get_by_test_id("use-rig").click()
+    page.locator('[data-test="page:predict"][aria-current=page]').wait_for()
+    expect(page.get_by_test_id(f"field:{LOAD}")).to_have_value("6 N")
 
 
 def test_predict_by_touch(phone: Page, workbench: Served) -> None:

@@ -7,11 +7,13 @@ from inspect import signature
 from typing import Any
 
 import pytest
+from pytest import approx
 
 from sonolube.tasks.openapi import task_path, tasks_description
 from sonolube.tasks.parameters import DoorParameter, Parameter, RigParameter
 from sonolube.tasks.table import TASKS, Task, task_named
 from sonolube.tasks.task import marks_of
+from sonolube.text.units import to_si
 from sonolube.vocabulary import quantity
 
 KINDS = {"null", "boolean", "object", "array", "number", "string", "integer"}  # of JSON schema, draft 2020-12
@@ -31,6 +33,7 @@ KEYWORDS = {  # of JSON schema that are used, each with the form of its value
     "default": object,
     "x-unit": str,
     "x-quantity": str,
+    "x-customary-unit": str,
 }
 OPERATION = {"operationId", "tags", "summary", "description", "requestBody", "responses", "x-example"}
 
@@ -146,6 +149,7 @@ def test_arguments_of_each_kind_have_its_form(document: dict[str, Any]) -> None:
         "description": "For the distance to the steady state. A number in m/s, or text: a speed, such as 20.3mm/s.",
         "x-unit": "m/s",
         "x-quantity": "sliding_speed",
+        "x-customary-unit": "m/s",
         "type": ["number", "string", "null"],
         "default": None,
     }
@@ -174,3 +178,12 @@ def test_answers_have_caveats_and_assumptions_but_those_of_look_ups(document: di
 def test_examples_of_python_are_left_out(document: dict[str, Any]) -> None:
     assert ">>>" in (task_named("friction").function.__doc__ or "")
     assert ">>>" not in json.dumps(document)
+
+
+@pytest.mark.parametrize(
+    ("argument", "si"),
+    [("amplitude", 2e-6), ("frequency", 2e3), ("track_diameter", 2e-3), ("stiffness", 2e6), ("load", 2)],
+)
+def test_a_bare_number_of_a_new_rig_has_a_customary_unit(document: dict[str, Any], argument: str, si: float) -> None:
+    about = body(operations(document)["/tasks/new"])["properties"][argument]
+    assert to_si(f"2 {about['x-customary-unit']}", unit=about["x-unit"], name=argument) == approx(si)

@@ -62,9 +62,10 @@ def rig_view(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
 
 
 def material_titles(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
-    """Titles of all materials and classes of materials by name."""
+    """Titles of all materials by name, and words for classes of materials, such as "Brass, any"."""
     del payload, places
-    return {name: material(name).title for name in (*material_names(), *material_classes())}
+    classes = {name: f"{(words := material(name).words)[:1].upper()}{words[1:]}, any" for name in material_classes()}
+    return {name: material(name).title for name in material_names()} | classes
 
 
 def rig_fields(

@@ -11,6 +11,7 @@ from sonolube.tasks.parameters import DoorParameter, File, KeyValues, Parameter,
 from sonolube.tasks.table import TASKS, Task
 from sonolube.tasks.task import marks_of
 from sonolube.text.units import unit_description
+from sonolube.vocabulary import quantity
 
 _JSON: Final = {str: "string", bool: "boolean", int: "integer", float: "number"}
 _TEXTS: Final = {"type": "array", "items": {"type": "string"}}
@@ -36,8 +37,8 @@ def tasks_description() -> dict[str, Any]:
     Returns
     -------
     dict
-        Units stand beside the arguments as ``x-unit``, names of the vocabulary as ``x-quantity``, and an example on a
-        terminal beside each task as ``x-example``.
+        Units stand beside the arguments as ``x-unit``, names of the vocabulary as ``x-quantity``, units of bare numbers
+        that a person types as ``x-customary-unit``, and an example on a terminal beside each task as ``x-example``.
     """
     kinds = {kind.__name__: kind for task in TASKS for kind in answer_kinds(task.function)}
     return {
@@ -121,6 +122,8 @@ def _property(argument: Argument, mark: Parameter | RigParameter) -> dict[str, A
         about["x-unit"] = mark.unit
     if mark.quantity:
         about["x-quantity"] = mark.quantity
+        if customary := quantity(mark.quantity).customary_unit:
+            about["x-customary-unit"] = customary
     if default is Argument.empty:
         return about | kind
     return about | kind | {"default": list(default) if isinstance(default, tuple) else default}

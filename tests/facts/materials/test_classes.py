@@ -85,3 +85,8 @@ def test_a_class_names_the_members_that_it_is_made_of() -> None:
     source = material("brass").property("hardness").source
     assert all(name in source for name in ("brass_c26000", "brass_c27000", "brass_c36000", "brass_c38500"))
     assert not material("brass_c36000").is_class
+
+
+@pytest.mark.parametrize(("name", "words"), [("brass", "brass"), ("steel", "steel"), ("felt", "felt or cloth")])
+def test_a_material_is_named_within_a_sentence(name: str, words: str) -> None:
+    assert material(name).words == words

@@ -112,6 +112,14 @@ class Material:
     aliases: tuple[str, ...] = ()
     is_class: bool = False
 
+    @property
+    def words(self) -> str:
+        """Title within a sentence, without its condition and without saying that a class has no grade."""
+        name = self.title.split(",")[0].split(" (")[0].removeprefix("Unspecified ")
+        name = name.removesuffix(" of unspecified temper")
+        first = name.split(" ")[0]
+        return name[0].lower() + name[1:] if first.replace("-", "").isalpha() and first[1:].islower() else name
+
     def property(self, property_name: str) -> SourcedValue:
         """Property with its unit and source.
 

@@ -271,13 +271,6 @@ class LeastKnown:
     remedy: str
 
 
-def _in_words(title: str) -> str:
-    """Title of a material within a sentence, without its condition and without saying that a class has no grade."""
-    name = title.split(",")[0].split(" (")[0].removeprefix("Unspecified ").removesuffix(" of unspecified temper")
-    first = name.split(" ")[0]
-    return name[0].lower() + name[1:] if first.replace("-", "").isalpha() and first[1:].islower() else name
-
-
 def new_rig_text(known: KnownRig) -> str:
     """Rig file of what is known, as TOML with comments.
 
@@ -289,7 +282,7 @@ def new_rig_text(known: KnownRig) -> str:
         known.vibration.entries(known.frequency),
         direction_entries(known.direction),
     ]
-    pin, disc = (_in_words(materials.material(name).title) for name in (known.pin, known.disc))
+    pin, disc = (materials.material(name).words for name in (known.pin, known.disc))
     tables: dict[str, Mapping[str, str]] = {
         "": {
             "title": json.dumps(f"{pin[:1].upper()}{pin[1:]} pin on {disc} disc"),

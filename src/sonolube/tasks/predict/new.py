@@ -19,6 +19,7 @@ from sonolube.tasks.answer import Answer, Block, Dataset, Table, Verbatim, answe
 from sonolube.tasks.files import InputFile, file_path
 from sonolube.tasks.parameters import File, Number, Parameter, Quantity
 from sonolube.tasks.task import shown, task
+from sonolube.vocabulary import quantity
 
 DEFAULT_SHAPE = "flat 3mm"
 """End of the pin where none is given."""
@@ -35,15 +36,22 @@ _ONE_OF = (
 )
 
 
+def _customary(text: str, name: str, *, kind: str = "") -> Quantity:
+    """Meaning of a quantity of the vocabulary with the unit in which it is customarily stated."""
+    return Quantity(f"{text}, usually in {quantity(name).customary_unit}.", name, kind=kind)
+
+
 @task
 def new(
     *,
     pin: Annotated[str, Parameter("Material of the pin, or its class: 100Cr6, 304, steel.", "MATERIAL")],
     disc: Annotated[str, Parameter("Material of the disc, or its class.", "MATERIAL")],
-    load: Annotated[Number, Quantity("Normal load.", "N")],
-    speed: Annotated[Number, Quantity("Sliding speed: 0.2m/s, or '100 rpm' with the track.", "m/s")],
-    frequency: Annotated[Number, Quantity("Frequency of the vibration.", "Hz")],
-    amplitude: Annotated[Number | None, Quantity("Vibration amplitude in its direction, zero to peak.", "m")] = None,
+    load: Annotated[Number, _customary("Normal load", "normal_load")],
+    speed: Annotated[Number, Quantity("Sliding speed: 0.2m/s, or '100 rpm' with the track.", "sliding_speed")],
+    frequency: Annotated[Number, _customary("Frequency of the vibration", "frequency")],
+    amplitude: Annotated[
+        Number | None, _customary("Vibration amplitude in its direction, zero to peak", "vibration_amplitude")
+    ] = None,
     direction: Annotated[
         str | None,
         Parameter(
@@ -53,12 +61,14 @@ def new(
         ),
     ] = None,
     torsion_radius: Annotated[
-        Number | None, Quantity("Radius of a torsional ring, at which the amplitude holds.", "m")
+        Number | None, _customary("Radius of a torsional ring, at which the amplitude holds", "torsion_radius")
     ] = None,
     actuator: Annotated[
         str | None, Parameter("Actuator by its name in sonolube actuators, in place of the amplitude.", "NAME")
     ] = None,
-    voltage: Annotated[Number | None, Quantity("Voltage of the actuator, peak to peak.", "V")] = None,
+    voltage: Annotated[
+        Number | None, _customary("Voltage of the actuator, peak to peak", "voltage_peak_to_peak")
+    ] = None,
     calibration: Annotated[
         str | None,
         Parameter(
@@ -75,9 +85,11 @@ def new(
         ),
     ] = None,
     track_radius: Annotated[
-        Number | None, Quantity("Radius of the track on the disc, for a speed in rpm.", "m")
+        Number | None, _customary("Radius of the track on the disc, for a speed in rpm", "track_radius")
     ] = None,
-    track_diameter: Annotated[Number | None, Quantity("Its diameter, in place of the radius.", "m")] = None,
+    track_diameter: Annotated[
+        Number | None, _customary("Its diameter, in place of the radius", "track_diameter")
+    ] = None,
     finish: Annotated[
         str | None,
         Parameter(
@@ -95,24 +107,25 @@ def new(
     ] = None,
     decay_length: Annotated[
         Number | None,
-        Quantity(
+        _customary(
             "Length over which the force of the worn contact falls by a factor of e, where it is known; else that "
-            "of published tests.",
-            "m",
+            "of published tests",
+            "decay_length",
         ),
     ] = None,
     stiffness: Annotated[
         Number | None,
-        Quantity(
-            "Measured normal stiffness of the contact under the load, such as 1.5MN/m, in place of the decay length.",
-            "N/m",
+        _customary(
+            "Measured normal stiffness of the contact under the load, in place of the decay length",
+            "normal_stiffness",
             kind="STIFFNESS",
         ),
     ] = None,
     layer_thickness: Annotated[
         Number | None,
-        Quantity(
-            "Thickness of the softer body, such as felt, as a layer on a rigid base: friction of a soft layer.", "m"
+        _customary(
+            "Thickness of the softer body, such as felt, as a layer on a rigid base: friction of a soft layer",
+            "layer_thickness",
         ),
     ] = None,
 ) -> "NewRig":

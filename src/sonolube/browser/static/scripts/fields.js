@@ -24,6 +24,7 @@ const BODIES = [
 /** @type {Record<string, number>} */
 const DIRECTIONS = {ArrowUp: 1, ArrowDown: -1};
 export const NOTHING = {};
+const COMMA = /^(\s*[+-]?\d*),(\d+)(?![\d.,])/; // of a decimal number, as much of the world writes it
 const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)(.*)$/is;
 
 /** @param {string} key @returns {string} */
@@ -65,6 +66,28 @@ export function split(text) {
 }
 
 /**
+ * Text of a value as it is understood: a point for a decimal comma, and the unit of the field for a bare number.
+ * @param {string} text
+ * @param {string} unit of the field; empty for none
+ * @returns {string}
+ */
+export function understood(text, unit) {
+  const number = text.replace(COMMA, '$1.$2');
+  return unit && split(number)?.rest.trim() === '' ? `${number.trim()} ${unit}` : number;
+}
+
+/**
+ * Value as it is printed: one space before its unit, and a micro sign; empty where it is no number.
+ * @param {string} text
+ * @returns {string}
+ */
+export function printed(text) {
+  const parts = split(text);
+  const unit = parts?.rest.trim().replace(/^[uμ](?=[A-Za-z])/, 'µ');
+  return parts ? [parts.digits, unit].filter(Boolean).join(' ') : '';
+}
+
+/**
  * Number as it is typed, with three significant digits, and its unit.
  * @param {number} number
  * @param {string} unit
@@ -94,9 +117,10 @@ function stepped(text, direction, isLarge) {
 /**
  * Text field that is read after a pause, on Enter and when it is left.
  * @param {{id: string, text: string, unit?: string, onText: (text: string, isMoving: boolean) => void,
- *   onSettle: () => void, [name: string]: any}} props further ones go to the input
+ *   onSettle: () => void, onDraft?: (text: string|null) => void, [name: string]: any}} props `unit`
+ *   is of a value, empty for a pure number; `onDraft` follows each key; further ones go to the input
  */
-export function TextField({id, text, unit = '', onText, onSettle, ...rest}) {
+export function TextField({id, text, unit, onText, onSettle, onDraft, ...rest}) {
   const [draft, setDraft] = useState(null);
   const timer = useRef(0);
   const latest = useRef(/** @type {string|null} */ (null));
@@ -110,9 +134,10 @@ export function TextField({id, text, unit = '', onText, onSettle, ...rest}) {
   const put = (typed) => {
     latest.current = typed;
     setDraft(typed);
+    onDraft?.(typed);
   };
   /** @param {string} typed */
-  const withUnit = (typed) => (unit && split(typed)?.rest.trim() === '' ? `${typed.trim()} ${unit}` : typed);
+  const withUnit = (typed) => (unit === undefined ? typed : understood(typed, unit));
   /** @param {boolean} isFinal */
   const give = (isFinal) => {
     clearTimeout(timer.current);

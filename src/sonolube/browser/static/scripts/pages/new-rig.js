@@ -1,8 +1,8 @@
 /** Page New rig: the questions of the task `new`, whose answer is a first rig file with what is least known of it. */
-import {html} from '../../vendor/htm-preact-3.1.1.js';
+import {html, useEffect, useState} from '../../vendor/htm-preact-3.1.1.js';
 import {Blocks, Caveats, Failure} from '../answer.js';
 import {useReply} from '../api.js';
-import {Labelled, NOTHING, TextField, uploadOf, useFile} from '../fields.js';
+import {Labelled, NOTHING, printed, TextField, understood, uploadOf, useFile} from '../fields.js';
 import {Button, capital, Card, classes, Loading, Refusal, Sheet, words} from '../parts.js';
 import {openRigText} from '../rig-panel.js';
 import {change, settle, useApp} from '../state.js';
@@ -10,7 +10,7 @@ import {change, settle, useApp} from '../state.js';
 /**
  * @import {Fault} from '../api.js'
  * @import {Texts} from '../state.js'
- * @typedef {{description: string, 'x-unit'?: string}} Schema of an argument
+ * @typedef {{description: string, 'x-unit'?: string, 'x-customary-unit'?: string}} Schema of an argument
  */
 
 const PATH = '/api/tasks/new';
@@ -20,6 +20,7 @@ const FILES = ['scan', 'pin_scan'];
 /** @type {Texts} */
 const LISTS = {pin: 'materials', disc: 'materials', actuator: 'actuators'};
 const NAME = 'name';
+const OF_NUMBERS = / A number(?: in [^,]+)?, or text: /; // what a description goes on with for programs
 
 /**
  * Argument of a view: an upload for a file, else its text.
@@ -39,10 +40,16 @@ const give = (name) => (text, isMoving) => change({view: {[name]: text || null}}
 function Question({name, schema, view, isNeeded, refusal, list}) {
   const id = `new-${name}`;
   const [note, take] = useFile(name);
+  const [draft, setDraft] = useState(/** @type {string|null} */ (null));
+  const unit = schema['x-customary-unit'] ?? schema['x-unit'];
+  const typed = draft ?? view[name] ?? '';
+  const read = unit === undefined ? '' : printed(understood(typed, unit));
+  const isRead = read && read !== typed && !refusal;
   const described = [`${id}-help`, refusal && `${id}-refusal`].filter(Boolean).join(' ');
   return html`<div class=${classes('field', {'is-refused': refusal})}>
     <div class="field-head">
       <label for=${id}>${capital(words(name))}${isNeeded && html` <span class="tag">needed</span>`}</label>
+      ${isRead && html`<output class="read" for=${id} data-test=${`read:${name}`}>${read}</output>`}
     </div>
     <div class="field-row">
       ${
@@ -57,7 +64,8 @@ function Question({name, schema, view, isNeeded, refusal, list}) {
           : html`<${TextField}
             id=${id}
             text=${view[name] ?? ''}
-            unit=${schema['x-unit']}
+            unit=${unit}
+            onDraft=${setDraft}
             onText=${give(name)}
             onSettle=${settle}
             list=${list}
@@ -75,7 +83,7 @@ function Question({name, schema, view, isNeeded, refusal, list}) {
         <${Button} kind="small" onClick=${() => give(name)('', false)}>leave out<//>
       </p>`
     }
-    <p class="hint" id=${`${id}-help`}>${schema.description}</p>
+    <p class="hint" id=${`${id}-help`}>${schema.description.split(OF_NUMBERS)[0]}</p>
     <${Refusal} text=${refusal || note} id=${`${id}-refusal`} data-test=${`refusal:${name}`} />
   </div>`;
 }
@@ -90,13 +98,26 @@ const fieldOf = (fault, names) =>
 
 /**
  * The rig that was made.
- * @param {{answer: import('../answer.js').Content, name: string, isDim: boolean}} props
+ * @param {{answer: import('../answer.js').Content, name: string, isDim: boolean, isRefused: boolean}} props
  */
-function Made({answer, name, isDim}) {
+function Made({answer, name, isDim, isRefused}) {
   const {text, rig} = answer.answer;
+  const [isWanted, want] = useState(false);
+  useEffect(() => {
+    if (isWanted && !isDim) openRigText(name, text, 'predict');
+    if (isRefused) want(false);
+  }, [isWanted, isDim, isRefused, text]);
+  if (isRefused) {
+    return html`<${Card} id="made-title" title="No rig yet" data-test="made">
+      <p class="row">
+        <${Button} kind="button is-main" disabled data-test="use-rig">Predict with this rig<//>
+        <span class="hint">It is made as soon as nothing is refused.</span>
+      </p>
+    <//>`;
+  }
   return html`<${Card} id="made-title" title=${rig} isDim=${isDim} data-test="made">
     <p class="row">
-      <${Button} kind="button is-main" onClick=${() => openRigText(name, text, 'predict')} data-test="use-rig">
+      <${Button} kind="button is-main" onClick=${() => want(true)} data-test="use-rig">
         Predict with this rig
       <//>
       <span class="hint">Every entry can be changed there, and the file taken away.</span>
@@ -152,7 +173,8 @@ export default function NewRig() {
     <div id="answer" tabindex="-1">
       <h1 class="statement">A first rig from what is known before a test</h1>
       <p class="hint">
-        Numbers with their unit. What is not known is taken from published tests, and stated as least known.
+        A number without a unit takes the usual one, which is shown while you type. What is not known is taken from
+        published tests, and stated as least known.
       </p>
     </div>
     <datalist id="known-materials">
@@ -193,7 +215,8 @@ export default function NewRig() {
           html`<${Made}
             answer=${content}
             name=${view[NAME]?.trim() || 'my-rig'}
-            isDim=${isWaiting || !isReady || Boolean(failure)}
+            isDim=${isWaiting}
+            isRefused=${!isReady || Boolean(failure)}
           />`
         }
       </div>
