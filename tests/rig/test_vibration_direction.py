@@ -276,6 +276,7 @@ def test_an_angle_takes_the_place_of_a_word_and_of_another_size() -> None:
     rig = read_rig(RIGS / "vibrating_base.toml", changes=["vibration.vibration_direction=20deg"])
     assert rig.direction.angle == approx(np.radians(20))
     assert rig.replace("vibration.direction", "across").direction.angle == approx(np.pi / 2)
+    assert tribometer("friction.model=coulomb", "vibration.direction=30 deg").direction.angle == approx(np.radians(30))
     second = tribometer("vibration.second_direction=across", "vibration.second_fraction=0.2")
     assert second.replace("vibration.second_amplitude", "1 um").direction.second_fraction == approx(0.4)
 

@@ -1,7 +1,9 @@
 """Sections of a rig file: tables and keys, with the checks between keys."""
 
+import re
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, Self
 
 from pydantic import Field, create_model, field_validator, model_validator
 
@@ -156,6 +158,9 @@ class WaveguideSection(Section):
     position: float = 0.0
 
 
+_ANGLE: Final = re.compile(r"\s*[-+.\d]")
+
+
 class VibrationSection(Section):
     """Vibration as measured, with drive and load of the measurement, the source to take, and the direction."""
 
@@ -179,6 +184,15 @@ class VibrationSection(Section):
     second_amplitude: float | None = None
     second_fraction: float | None = Field(default=None, description="in place of second_amplitude")
     second_phase: float | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _angle_in_place_of_a_word(cls, content: Any) -> Any:
+        """Take an angle that stands for the direction as `vibration_direction`."""
+        told = content.get("direction") if isinstance(content, Mapping) else None
+        if not isinstance(told, str) or not _ANGLE.match(told) or content.get("vibration_direction") is not None:
+            return content
+        return {**{key: value for key, value in content.items() if key != "direction"}, "vibration_direction": told}
 
     def require_possible(self) -> None:
         """Refuse a negative amplitude, conditions of a measurement that is not there or has none, and directions."""
