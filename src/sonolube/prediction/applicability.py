@@ -132,11 +132,17 @@ def _soft(rig: Rig) -> str | None:
 
 def _crushed(rig: Rig) -> str | None:
     """Refusal of a nominal pressure that the softer body cannot bear."""
+    found = crushing_load(rig)
+    return None if found is None else f"{rig.title}: {found}"
+
+
+def crushing_load(rig: Rig) -> str | None:
+    """Sentence on a nominal pressure above the hardness of the softer body; None where it bears the load."""
     pressure, hardness = rig.normal_load / rig.contact.nominal_area, softer_hardness(rig)
     if isinstance(hardness, str) or pressure <= hardness:
         return None
     return (
-        f"{rig.title}: a load of {format_si(rig.normal_load, 'N')} over {format_si(rig.contact.nominal_area, 'm2')} is"
+        f"a load of {format_si(rig.normal_load, 'N')} over {format_si(rig.contact.nominal_area, 'm2')} is"
         f" {format_si(pressure, 'Pa')}, above the hardness {format_si(hardness, 'Pa')} of the softer body,"
         " which cannot bear it; lower the load or enlarge contact.nominal_area"
     )

@@ -159,13 +159,18 @@ def _outcome(prediction: "xr.Dataset | LabelledArrays") -> str:
     """Sentences on the change of friction: the median, and the 80 % interval with the tests behind it."""
     if prediction.attrs["unknown"]:
         return "Friction falls by anything from 0 to 100 %: a dry prediction does not hold."
-    low, high = (100 * each for each in interval(prediction, "friction_reduction"))
-    if max(abs(low), abs(high)) < _NONE:
+    if is_unchanged(prediction):
         return "Friction does not change."
+    low, high = (100 * each for each in interval(prediction, "friction_reduction"))
     middle = 100 * float(np.median(prediction["friction_reduction"].to_numpy()))
     change = "hardly changes" if abs(middle) < _NONE else f"{_falls(middle)} by about {abs(middle):.0f} %"
     basis = prediction.attrs.get("basis", "")
     return f"Friction {change}. Likely between {change_range(low, high)} (8 chances in 10){basis}."
+
+
+def is_unchanged(prediction: "xr.Dataset | LabelledArrays") -> bool:
+    """Whether friction changes by less than half a percent throughout the 80 % interval."""
+    return max(100 * abs(each) for each in interval(prediction, "friction_reduction")) < _NONE
 
 
 def _falls(reduction: float) -> str:

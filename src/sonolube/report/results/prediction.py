@@ -5,7 +5,7 @@ from typing import Any, Final
 import numpy as np
 
 from sonolube.prediction.hierarchy import PROBABILITIES
-from sonolube.prediction.rig_statement import change_range, interval
+from sonolube.prediction.rig_statement import change_range, interval, is_unchanged
 from sonolube.report.blocks import Bar, Bars
 from sonolube.rig import Rig
 from sonolube.rig.datasets import LabelledArrays
@@ -61,7 +61,8 @@ def change_bars(prediction: LabelledArrays) -> Bars:
 def _change_bar(prediction: LabelledArrays, name: str, label: str, note: str) -> Bar:
     """Interval of a reduction with its median in percent."""
     ends = np.quantile(prediction[name].to_numpy(), _BAR_ENDS)
-    return Bar(name=label, text=f"{-100 * ends[2]:+.0f} % {note}".rstrip(), ends=ends.tolist())
+    change = round(-100 * ends[2])
+    return Bar(name=label, text=f"{f'{change:+d}' if change else '0'} % {note}".rstrip(), ends=ends.tolist())
 
 
 def measurement_objects(prediction: LabelledArrays) -> list[dict[str, Any]]:
@@ -72,9 +73,12 @@ def measurement_objects(prediction: LabelledArrays) -> list[dict[str, Any]]:
 
 
 def one_run_object(prediction: LabelledArrays) -> dict[str, Any] | None:
-    """Reduction of friction as one run at the operating point would leave it, about the median of now; None unknown."""
+    """Reduction of friction as one run at the operating point would leave it, about the median of now.
+
+    None where it is not known, or friction does not change.
+    """
     left = column(prediction, "measure_share_left")
-    if not left:
+    if not left or is_unchanged(prediction):
         return None
     middle = _median(prediction, "friction_reduction")
     found = {

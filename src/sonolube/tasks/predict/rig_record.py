@@ -12,8 +12,10 @@ from sonolube.errors import InvalidInput
 from sonolube.models.contact.tangential_stiffness import DEFAULT_TANGENTIAL_STIFFNESS, TANGENTIAL_STIFFNESSES
 from sonolube.models.friction import FRICTION_MODELS, FrictionModel
 from sonolube.models.thermal.flash import FLASH_MODELS
+from sonolube.prediction.applicability import applicability, crushing_load
 from sonolube.prediction.bodies import softer_hardness
 from sonolube.prediction.evidence import large_amplitude_caveats
+from sonolube.prediction.rig_statement import WEAR_OF_LUBRICATED
 from sonolube.prediction.verdict import PointVerdict, Verdict, point_verdict, verdict_of_rig
 from sonolube.report import Drawing
 from sonolube.report.results.rig_point import (
@@ -264,6 +266,19 @@ def friction(
     )
 
 
+def _load_caveats(rig: Rig) -> tuple[str, ...]:
+    """Caveat of a load that the softer body cannot bear."""
+    found = crushing_load(rig)
+    return () if found is None else (found,)
+
+
+def _lubricated_wear(rig: Rig) -> tuple[str, ...]:
+    """Caveat of the wear of a contact that counts as lubricated by its friction."""
+    return (
+        (WEAR_OF_LUBRICATED[:1].lower() + WEAR_OF_LUBRICATED[1:].rstrip("."),) if applicability(rig).any_ratio else ()
+    )
+
+
 @task
 def wear(rig: RigFile, **entries: Unpack[RigEntries]) -> RigRecord:
     """Wear of the rig's softer body with and without vibration.
@@ -289,7 +304,14 @@ def wear(rig: RigFile, **entries: Unpack[RigEntries]) -> RigRecord:
         errors = wear_model_errors(result.wear_model)
         rows += wear_error_rows(errors)
         measured |= wear_error_object(errors)
-    return RigRecord(rig=known, result=result, rows=rows, entries=measured, verdict=verdict_of_rig(resolved))
+    return RigRecord(
+        rig=known,
+        result=result,
+        rows=rows,
+        entries=measured,
+        verdict=verdict_of_rig(resolved),
+        leading=(*_load_caveats(known), *_lubricated_wear(known)),
+    )
 
 
 @task
@@ -316,6 +338,7 @@ def simulate(rig: RigFile, **watch: Unpack[WatchedRig]) -> RigRecord:
         at_least=_lower_bounds(result.friction.power),
         measured=measured_on(known, vibration_amplitude=result.vibration.vibration_amplitude),
         verdict=point_verdict(known, friction=result.friction),
+        leading=(*_load_caveats(known), *_lubricated_wear(known)),
         drawings={name: Drawing(chart=lambda: simulation_chart(labelled))},
         datasets={f"{name}.nc": labelled},
     )
@@ -363,6 +386,8 @@ def thermal(
     '7.3 mW'
     """
     known = rig_of(rig)
+    if (crushed := crushing_load(known)) is not None:
+        raise InvalidInput(f"{known.title}: {crushed}")
     hardness = softer_hardness(known, pin, disc)
     levels = vibration_heat.split(",") if isinstance(vibration_heat, str) else [vibration_heat]
     result = temperature_point(
