@@ -1,5 +1,6 @@
 """Set voltages against measured ones: waves by hand, and rigs whose amplifier gives another voltage than it is told."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -9,7 +10,7 @@ from pytest import approx
 from tests.laboratory.simulated_rig import MemoryRecord, SimulatedRig
 
 from sonolube.facts.protocol import Protocol, protocol_from
-from sonolube.laboratory import Block, Channel, DriveSetting, RunState, run_protocol
+from sonolube.laboratory import Block, Channel, DeviceError, DriveSetting, RunState, run_protocol
 from sonolube.laboratory.set_and_measured import difference, is_near, monitor_of, self_test_setting
 
 FREQUENCY = 22e3
@@ -59,7 +60,8 @@ def test_small_voltages_may_differ_by_a_volt() -> None:
 def test_a_channel_of_the_swing_is_taken_as_it_is_and_one_that_is_sampled_seldom_tells_nothing() -> None:
     swing = Block(first_sample=0, sample_rate=10.0, values=np.array([[25.0], [27.0]]))
     assert "measures 26 V" in difference(swing, ["voltage_peak_to_peak"], SET)
-    assert difference(wave(40.0, rate=109e3), NAMES, SET) == ""
+    assert difference(wave(40.0, rate=104e3), NAMES, SET) == ""
+    assert "measures 40 V" in difference(wave(40.0, rate=109.9e3), NAMES, SET)  # 110 kHz as a divided clock gives it
     assert difference(wave(40.0), ["temperature", "current"], SET) == ""
     assert monitor_of(["voltage"], sample_rate=110e3, frequency=FREQUENCY) == "voltage"
     assert monitor_of(["voltage", "voltage_peak_to_peak"], sample_rate=1.0, frequency=FREQUENCY) == (
@@ -100,14 +102,14 @@ class Amplified(SimulatedRig):
         return replace(block, values=values)
 
 
-def protocol(steps: Sequence[Mapping[str, object]]) -> Protocol:
+def protocol(steps: Sequence[Mapping[str, object]], *, sample_rate: str = "200 kHz") -> Protocol:
     return protocol_from(
         {
             "title": "driven",
             "source": "none",
             "limits": {"voltage_maximum": "80 V", "duration_maximum": "10 s"},
             "steps": [
-                {"kind": "acquire", "channels": ["voltage"], "sample_rate": "200 kHz", "duration": "1 s"},
+                {"kind": "acquire", "channels": ["voltage"], "sample_rate": sample_rate, "duration": "1 s"},
                 *steps,
             ],
         }
@@ -151,6 +153,44 @@ def test_a_voltage_that_becomes_another_during_a_run_ends_it() -> None:
     result, _ = run(rig)
     assert (result.outcome, rig.swings) == ("stopped", [2.0, 20.0, 30.0])
     assert "measures 0 V peak to peak where 30 V was set" in result.reason
+
+
+@dataclass
+class Divided(Amplified):
+    """A rig whose converter divides a clock of 20 MHz, up to a highest rate."""
+
+    highest: float = 1e6
+
+    def start(self, channels: Sequence[str], *, sample_rate: float) -> float:
+        if sample_rate > self.highest:
+            raise DeviceError(f"simulated: {sample_rate:g} Hz refused")
+        self.rate = super().start(channels, sample_rate=20e6 / math.ceil(20e6 / sample_rate))
+        return self.rate
+
+
+def test_a_voltage_is_compared_at_the_somewhat_lower_rate_that_hardware_gives() -> None:
+    # For 5 samples a period of 22 kHz the clock of 20 MHz is divided by 182: 109.89 kHz.
+    rig = Divided(gain=2.0)
+    result, _ = run(rig)
+    assert (result.outcome, rig.swings) == ("stopped", [2.0])
+
+
+def test_a_self_test_at_a_rate_that_the_acquisition_has_not_is_left_out_with_the_reason() -> None:
+    rig = Divided(highest=2e3)
+    record, devices = MemoryRecord(), replace(rig.devices(), simulated=False)
+    slow = protocol(DRIVEN, sample_rate="1 kHz")
+    result = run_protocol(slow, devices, record, operator=lambda _: True)
+    assert (result.outcome, rig.swings) == ("completed", [20.0, 30.0])
+    (facts,) = [facts for kind, facts in record.notes if kind == "self-test"]
+    assert facts["reason"] == "left out: simulated: 110000 Hz refused"
+
+
+def test_the_limit_of_the_voltage_holds_in_the_self_test() -> None:
+    rig = Amplified(gain=100.0)  # a peak of 100 V where 80 V are allowed
+    result, _ = run(rig)
+    assert (result.outcome, rig.swings) == ("stopped", [2.0])
+    assert "its limit is 80 V" in result.reason
+    assert rig.is_off
 
 
 def test_both_comparisons_can_be_left_out() -> None:

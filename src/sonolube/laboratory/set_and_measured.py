@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from sonolube.laboratory.block import Block
-from sonolube.laboratory.devices import DriveSetting
+from sonolube.laboratory.devices import RATE_ERROR, DriveSetting
 from sonolube.laboratory.interlocks import SAMPLES_PER_PERIOD
 from sonolube.text.units import format_si
 
@@ -57,7 +57,7 @@ def monitor_of(channels: Container[str], *, sample_rate: float, frequency: float
     """Channel that shows the voltage of the drive at a sample rate and frequency, in Hz; empty without one."""
     if "voltage_peak_to_peak" in channels:
         return "voltage_peak_to_peak"
-    resolves = sample_rate >= SAMPLES_PER_PERIOD * frequency * (1 - 1e-9)
+    resolves = sample_rate >= SAMPLES_PER_PERIOD * frequency * (1 - RATE_ERROR)  # hardware may give that much less
     return "voltage" if "voltage" in channels and resolves else ""
 
 

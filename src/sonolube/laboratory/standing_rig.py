@@ -8,7 +8,7 @@ from typing import Final
 
 from sonolube.errors import SonolubeError
 from sonolube.laboratory.block import BLOCK_DURATION, Block
-from sonolube.laboratory.devices import Acquisition, Devices
+from sonolube.laboratory.devices import RATE_ERROR, Acquisition, Devices
 from sonolube.laboratory.interlocks import IDLE_RATE, SAMPLES_PER_PERIOD, WAVES, Interlock, RunLimits, first_trip
 from sonolube.laboratory.states import Event, RunControl, RunEnded, ending
 from sonolube.laboratory.watching import RunWatcher, told
@@ -116,7 +116,7 @@ def _seen(acquisition: Acquisition, bounds: Sequence[tuple[str, Interlock]], *, 
     try:
         acquisition.stop()
         given = acquisition.start(names, sample_rate=rate)
-        if given < rate * (1 - 1e-9):
+        if given < rate * (1 - RATE_ERROR):
             return {}
         while any(on.values()) and time <= max(SETTLING[what] for what in on):
             block = acquisition.read(max(1, round(BLOCK_DURATION * given)))

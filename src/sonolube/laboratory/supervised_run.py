@@ -15,6 +15,8 @@ from sonolube.errors import SonolubeError
 from sonolube.laboratory.block import BLOCK_DURATION, Block
 from sonolube.laboratory.devices import (
     Acquisition,
+    DeviceError,
+    DeviceLost,
     Devices,
     DriveSetting,
     Recorder,
@@ -335,16 +337,25 @@ class SupervisedRun(ABC):
         name = monitor_of(acquisition.channels, sample_rate=rate, frequency=setting.frequency)
         if not name:
             return
-        given = acquisition.start([name], sample_rate=rate)
+        facts = {"voltage_peak_to_peak": setting.voltage_peak_to_peak, "frequency": setting.frequency, "channel": name}
+        try:
+            given = acquisition.start([name], sample_rate=rate)
+        except DeviceLost:
+            raise
+        except DeviceError as refusal:  # of a rate that the run itself does not need
+            self._note("self-test", **facts, reason=f"left out: {refusal}")
+            return
         self._devices.drive.drive(setting)
         count = max(1, round(BLOCK_DURATION * given))
-        for _ in range(round(SELF_TEST_TIME / BLOCK_DURATION)):
+        locks = [each for each in self._limits.locks if each.channel.name == name]
+        for number in range(round(SELF_TEST_TIME / BLOCK_DURATION)):
             block = acquisition.read(count)
+            require_gapless(block, number * count, device=acquisition.name)
+            self._end_at(first_trip(block, [name], locks))
         self._devices.drive.off()
         acquisition.stop()
         told = difference(block, [name], setting)
-        swing = setting.voltage_peak_to_peak
-        self._note("self-test", voltage_peak_to_peak=swing, frequency=setting.frequency, channel=name, reason=told)
+        self._note("self-test", **facts, reason=told)
         if told:
             raise RunEnded(Event.TRIP, f"self-test before the first step: {told}")
 
