@@ -134,7 +134,7 @@ def test_bare_numbers_of_a_new_rig_take_the_customary_unit_which_is_shown_while_
     page.get_by_test_id("use-rig").click()  # while the rig with this amplitude is being made
     page.locator('[data-test="page:predict"][aria-current=page]').wait_for()
     at_rest(page)
-    expect(page.get_by_test_id(f"field:{AMPLITUDE}")).to_have_value("2 um")
+    expect(page.get_by_test_id(f"field:{AMPLITUDE}")).to_have_value("2 µm")
 
 
 def test_a_refused_answer_of_a_new_rig_leaves_no_rig_to_predict_with(page: Page, workbench: Served) -> None:

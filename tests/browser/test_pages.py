@@ -109,6 +109,40 @@ def test_the_menu_of_pages_is_opened_and_closed_by_keys(page: Page) -> None:
     expect(page.locator(".doors [aria-current=page]")).to_have_text("Jobs")
 
 
+def test_the_sentence_on_the_contact_is_its_form_by_keys_and_on_a_phone(page: Page) -> None:
+    assert sentence(page) == (
+        "A steel pin on an aluminium disc, pressed with 3 N, sliding at 20.3 mm/s, vibrates along the normal at 22 kHz"
+        " with 2.5 µm, driven by 28 V. Without vibration its coefficient of friction is 0.341."
+    )
+    reach(page, f"field:{LOAD}")
+    page.keyboard.press("ArrowUp")
+    expect(page.get_by_test_id(f"drawn:{LOAD}")).to_have_text("3.1 N")
+    reach(page, f"spread-button:{LOAD}")  # past the other fields, which are not in use by that
+    page.set_viewport_size({"width": 390, "height": 844})
+    page.get_by_test_id(f"drawn:{LOAD}").click()
+    assert in_use(page) == f"field:{LOAD}"
+    page.keyboard.type("4,5")
+    page.keyboard.press("Enter")
+    at_rest(page)
+    assert numbers(page)[0][1] == predicted("tribometer", {LOAD: "4.5 N"})[0][1]
+    assert "pressed with 4.5 N," in sentence(page)
+
+
+def sentence(page: Page) -> str:
+    """Sentence on the contact with the values in its fields."""
+    found: str = page.get_by_test_id("sentence").evaluate(
+        "(each) => [...each.children].map((part) => part.querySelector('input')?.value ?? part.textContent).join('')"
+    )
+    return found
+
+
+def test_the_body_that_vibrates_is_that_of_the_rig(page: Page, workbench: Served) -> None:
+    expect(page.get_by_test_id("moves:pin")).to_be_visible()
+    show(page, workbench, "vibrating_base", {})
+    assert "; the base vibrates along the sliding at 3 kHz" in sentence(page)
+    expect(page.get_by_test_id("moves:disc")).to_be_visible()
+
+
 TYPED = ("", "3 kg", "5 V", "1e999 N", "-1 N", "NaN", "\u202e3 N", "<img onerror=alert(1)>", "9" * 10_000)
 
 

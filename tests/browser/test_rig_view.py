@@ -8,6 +8,7 @@ from pytest import approx
 import sonolube as sl
 from sonolube.browser.requests import Places
 from sonolube.browser.rig_view import rig_fields, rig_view
+from sonolube.example_files import example_files
 
 NOWHERE = Places(rigs={})
 
@@ -116,3 +117,25 @@ def test_a_calibration_is_one_text_and_offered_where_nothing_scales_the_amplitud
     assert (stated["text"], stated["unit"], stated["lowest"]) == ("25 V = 2 um", "", None)
     tribometer = rig_view({"rig": {"name": "tribometer", "changes": {}}}, NOWHERE)
     assert not [each for each in tribometer["fields"] if each["key"] == "vibration.calibration"]
+
+
+@pytest.mark.parametrize("name", [name for name, each in example_files().items() if each.is_rig])
+def test_the_sentence_on_a_rig_states_each_first_entry_once(name: str) -> None:
+    found = rig_view({"rig": {"name": name, "changes": {}}}, NOWHERE)
+    stated = [piece["key"] for piece in found["sentence"] if "key" in piece]
+    assert sorted(stated) == sorted(each["key"] for each in found["fields"] if each["is_first"])
+
+
+def test_the_sentence_on_a_new_rig_has_the_end_of_its_pin_and_the_body_that_moves() -> None:
+    known: dict[str, Any] = {"pin": "brass", "disc": "steel", "load": 3.0, "speed": 0.05, "frequency": 22e3}
+    answer = sl.new(**known, amplitude=2.5e-6, shape="ball 2.5mm")
+    text = answer.rig_text.replace("[vibration]", '[vibration]\nvibrating_body = "disc"')
+
+    def stated(content: str) -> str:
+        found = rig_view({"rig": {"name": "own", "text": content, "changes": {}}}, NOWHERE)
+        texts = {each["key"]: each["text"] for each in found["fields"]}
+        return "".join(piece.get("text") or texts[piece["key"]] for piece in found["sentence"])
+
+    begin = "A brass pin of 2.5 mm radius on a steel disc, pressed with 3 N, sliding at 50 mm/s"
+    assert stated(answer.rig_text).startswith(f"{begin}, vibrates along the normal at 22 kHz with 2.5 um.")
+    assert stated(text).startswith(f"{begin}; the disc vibrates along the normal at 22 kHz")

@@ -7,6 +7,7 @@ from typing import Any, Final
 
 from sonolube.browser.answers import names_only, requested_file
 from sonolube.browser.requests import Places
+from sonolube.browser.rig_sentence import rig_sentence, vibrating_body
 from sonolube.design import map_kinds
 from sonolube.errors import InvalidInput
 from sonolube.example_files import example_files
@@ -39,8 +40,8 @@ _STEPS: Final = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 def rig_view(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
     """Rig of a request as an object for JSON.
 
-    Title, source, fields by table, what a drawing shows, assumptions, the rigs that may be chosen, and the studies and
-    maps that the rig has.
+    Title, source, fields by table, the sentence that is the form of the first ones, what a drawing shows, assumptions,
+    the rigs that may be chosen, and the studies and maps that the rig has.
     """
     with ExitStack() as stack:
         path, changes = requested_file(payload.get("rig"), places, stack)
@@ -53,7 +54,8 @@ def rig_view(payload: Mapping[str, Any], places: Places) -> dict[str, Any]:
         "title": rig.title,
         "source": rig.source,
         "fields": sorted(fields, key=lambda each: first.get(each["key"], len(first))),
-        "drawing": _drawing(rig),
+        "sentence": rig_sentence(rig, content, {each["key"] for each in fields}),
+        "drawing": _drawing(rig) | {"vibrating_body": vibrating_body(content)},
         "assumptions": dict(rig.assumptions),
         "studies": studies_of(rig),
         "maps": map_kinds(commanded_quantity(rig)),

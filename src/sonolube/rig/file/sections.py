@@ -176,6 +176,10 @@ class VibrationSection(Section):
     direction: DirectionWord | None = Field(
         default=None, description='Direction of the vibration, which its amplitude is of; "normal" where absent'
     )
+    vibrating_body: Literal["pin", "disc"] | None = Field(
+        default=None,
+        description='Body that vibrates, for sentences and drawings alone; "pin", the upper one, where absent',
+    )
     vibration_direction: float | None = None
     torsion_radius: float | None = None
     second_direction: SecondWord | None = Field(

@@ -25,6 +25,7 @@ const BODIES = [
 const DIRECTIONS = {ArrowUp: 1, ArrowDown: -1};
 export const NOTHING = {};
 const COMMA = /^(\s*[+-]?\d*),(\d+)(?![\d.,])/; // of a decimal number, as much of the world writes it
+const MICRO = /^(\s*[+-]?[\d.]+(?:e[+-]?\d+)?\s*)[µμ](?=[A-Za-z])/i;
 const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)(.*)$/is;
 
 /** @param {string} key @returns {string} */
@@ -66,13 +67,14 @@ export function split(text) {
 }
 
 /**
- * Text of a value as it is understood: a point for a decimal comma, and the unit of the field for a bare number.
+ * Text of a value as it is understood: a point for a decimal comma, um for µm, and the unit of the field for a bare
+ * number.
  * @param {string} text
  * @param {string} unit of the field; empty for none
  * @returns {string}
  */
 export function understood(text, unit) {
-  const number = text.replace(COMMA, '$1.$2');
+  const number = text.replace(COMMA, '$1.$2').replace(MICRO, '$1u');
   return unit && split(number)?.rest.trim() === '' ? `${number.trim()} ${unit}` : number;
 }
 
@@ -141,7 +143,8 @@ export function TextField({id, text, unit, onText, onSettle, onDraft, ...rest}) 
   /** @param {boolean} isFinal */
   const give = (isFinal) => {
     clearTimeout(timer.current);
-    if (latest.current !== null && withUnit(latest.current) !== text) onText(withUnit(latest.current), !isFinal);
+    if (latest.current !== null && withUnit(latest.current) !== withUnit(text))
+      onText(withUnit(latest.current), !isFinal);
     if (isFinal) put(null);
   };
   useEffect(() => () => clearTimeout(timer.current), []);
@@ -233,54 +236,76 @@ export const refusedBy = (id, refusal) =>
   refusal ? {'aria-invalid': 'true', 'aria-describedby': `${id}-refusal`} : {};
 
 /**
- * Entry of a rig, with its spread.
- * @param {{field: RigField, text: string, spread?: string, isChanged: boolean, refusal?: string, spreadRefusal?:
- *   string, onText: (key: string, text: string|null, isMoving: boolean) => void, onSettle: () => void}} props `onText`
- *   with null takes a change back
+ * @typedef {{field: RigField, text: string, spread?: string, isChanged: boolean, refusal?: string, spreadRefusal?:
+ *   string, onText: (key: string, text: string|null, isMoving: boolean) => void, onSettle: () => void}} EntryProps
+ *   `onText` with null takes a change back
  */
-export function Field({field, text, spread, isChanged, refusal, spreadRefusal, onText, onSettle}) {
+
+/**
+ * Text field of an entry of a rig.
+ * @param {EntryProps & {[name: string]: any}} props further ones go to the input
+ */
+export function EntryInput({field, text, refusal, onText, onSettle, spread, isChanged, spreadRefusal, ...rest}) {
+  const id = fieldId(field.key);
+  const described = [refusal && `${id}-refusal`, field.help && `${id}-help`].filter(Boolean).join(' ') || undefined;
+  return html`<${TextField}
+    id=${id}
+    text=${printed(text) || text}
+    unit=${field.unit}
+    onText=${(given, isMoving) => onText(field.key, given, isMoving)}
+    onSettle=${onSettle}
+    title=${field.help || undefined}
+    aria-invalid=${refusal ? 'true' : undefined}
+    aria-describedby=${described}
+    data-test=${`field:${field.key}`}
+    ...${rest}
+  />`;
+}
+
+/**
+ * Name of an entry, and the button that takes its change back.
+ * @param {EntryProps & {isLabel?: boolean}} props
+ */
+function EntryHead({field, isChanged, onText, isLabel = true}) {
+  const name = html`${field.label}${field.assumed && html` <span class="tag" title=${field.assumed}>assumed</span>`}`;
+  return html`<div class="field-head">
+    ${isLabel ? html`<label for=${fieldId(field.key)}>${name}</label>` : html`<span class="field-name">${name}</span>`}
+    ${
+      isChanged &&
+      html`<${Button}
+        kind="small"
+        onClick=${() => onText(field.key, null, false)}
+        aria-label=${`Take back the change of ${field.label}`}
+        data-test=${`reset:${field.key}`}
+      >
+        take back
+      <//>`
+    }
+  </div>`;
+}
+
+/**
+ * Entry of a rig with its slider and spread; without its text field where that stands elsewhere.
+ * @param {EntryProps & {hasInput?: boolean}} props
+ */
+export function Field({hasInput = true, ...entry}) {
+  const {field, text, spread, isChanged, refusal, spreadRefusal, onText, onSettle} = entry;
   const id = fieldId(field.key);
   const [isSpread, setSpread] = useState(false);
   const hasSlider = field.lowest != null && field.highest != null;
   const isNumber = hasSlider || split(field.text) !== null;
   const shown = isSpread || spread !== undefined;
-  const described = [refusal && `${id}-refusal`, field.help && `${id}-help`].filter(Boolean).join(' ') || undefined;
   /** @param {string} given @param {boolean} isMoving */
   const give = (given, isMoving) => onText(field.key, given, isMoving);
   const open = () => {
     if (spread !== undefined) onText(spreadKey(field.key), null, false);
     setSpread(!shown);
   };
+  const slider = hasSlider && html`<${Slider} field=${field} text=${text} onText=${give} onSettle=${onSettle} />`;
   return html`<div class=${classes('field', {'is-refused': refusal, 'is-changed': isChanged})}>
-    <div class="field-head">
-      <label for=${id}>
-        ${field.label}
-        ${field.assumed && html` <span class="tag" title=${field.assumed}>assumed</span>`}
-      </label>
-      ${
-        isChanged &&
-        html`<${Button}
-          kind="small"
-          onClick=${() => onText(field.key, null, false)}
-          aria-label=${`Take back the change of ${field.label}`}
-          data-test=${`reset:${field.key}`}
-        >
-          take back
-        <//>`
-      }
-    </div>
+    <${EntryHead} ...${entry} isLabel=${hasInput} />
     <div class="field-row">
-      <${TextField}
-        id=${id}
-        text=${text}
-        unit=${field.unit}
-        onText=${give}
-        onSettle=${onSettle}
-        title=${field.help || undefined}
-        aria-invalid=${refusal ? 'true' : undefined}
-        aria-describedby=${described}
-        data-test=${`field:${field.key}`}
-      />
+      ${hasInput ? html`<${EntryInput} ...${entry} />` : slider}
       ${
         isNumber &&
         html`<${Button}
@@ -295,8 +320,8 @@ export function Field({field, text, spread, isChanged, refusal, spreadRefusal, o
         <//>`
       }
     </div>
-    ${hasSlider && html`<${Slider} field=${field} text=${text} onText=${give} onSettle=${onSettle} />`}
-    <${Refusal} text=${refusal} id=${`${id}-refusal`} data-test=${`refusal:${field.key}`} />
+    ${hasInput && slider}
+    ${hasInput && html`<${Refusal} text=${refusal} id=${`${id}-refusal`} data-test=${`refusal:${field.key}`} />`}
     ${
       shown &&
       html`<div class="field-spread">
@@ -316,7 +341,7 @@ export function Field({field, text, spread, isChanged, refusal, spreadRefusal, o
         </p>
       </div>`
     }
-    ${field.help && html`<span class="hidden" id=${`${id}-help`}>${field.help}</span>`}
+    ${hasInput && field.help && html`<span class="hidden" id=${`${id}-help`}>${field.help}</span>`}
   </div>`;
 }
 

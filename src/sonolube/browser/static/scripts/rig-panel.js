@@ -1,10 +1,11 @@
 /**
- * Left column: which rig, its drawing, and its entries as fields; and the frame of a page that has it beside its
- * answer.
+ * Left column: which rig, its contact as a form, and its other entries as fields; and the frame of a page that has it
+ * beside its answer.
  */
 import {html, useEffect, useRef, useState} from '../vendor/htm-preact-3.1.1.js';
 import {useReply} from './api.js';
-import {Field, focusField, spreadKey} from './fields.js';
+import {ContactForm} from './contact-form.js';
+import {Field, spreadKey} from './fields.js';
 import {Button, FileButton, Loading, Refusal, Select, useDrop} from './parts.js';
 import {addressOf, change, isOfTab, pack, setEntry, settle, useApp} from './state.js';
 
@@ -13,21 +14,9 @@ import {addressOf, change, isOfTab, pack, setEntry, settle, useApp} from './stat
  * @import {FieldEvent} from './parts.js'
  * @import {RigState} from './state.js'
  * @typedef {{title: string, source?: string, rigs: string[], studies: string[], maps: string[], fields: RigField[],
- *   drawing: {has_structure: boolean, has_drive: boolean, direction: string}}} RigView as the server shows a rig
+ *   sentence: import('./contact-form.js').Piece[], drawing: import('./contact-form.js').Parts}} RigView as the server
+ *   shows a rig
  */
-
-/**
- * Where the drawing of a rig shows values.
- * @type {Record<string, {x: number, y: number, anchor: string, sign?: string}>}
- */
-const PLACES = {
-  'drive.voltage_peak_to_peak': {x: 8, y: 22, anchor: 'start'},
-  'drive.frequency': {x: 8, y: 40, anchor: 'start'},
-  'contact.normal_load': {x: 262, y: 22, anchor: 'end'},
-  'vibration.vibration_amplitude': {x: 262, y: 84, anchor: 'end'},
-  'friction.friction_coefficient': {x: 8, y: 104, anchor: 'start', sign: 'µ '},
-  'sliding.sliding_speed': {x: 262, y: 155, anchor: 'end'},
-};
 
 /** Last view that was read and its rig, so that a page that opens shows it at once. */
 let last = {view: /** @type {RigView|null} */ (null), rig: /** @type {Partial<RigState>} */ ({})};
@@ -99,80 +88,6 @@ export function RigChoice({view}) {
 }
 
 /**
- * Value of an entry beside its part.
- * @param {{field: RigField, text: string}} props
- */
-function Value({field, text}) {
-  const {x, y, anchor, sign = ''} = PLACES[field.key];
-  const shown = sign + (text.length > 13 ? `${text.slice(0, 12)}…` : text);
-  const width = 7 * shown.length + 10;
-  /** @param {UIEvent & {key?: string}} event */
-  const edit = (event) => {
-    if (event.type === 'keydown' && event.key !== 'Enter' && event.key !== ' ') return;
-    event.preventDefault();
-    focusField(field.key);
-  };
-  return html`<g
-    role="button"
-    tabindex="0"
-    class="schematic-value"
-    aria-label=${`${shown}, ${field.label}. Edit`}
-    onClick=${edit}
-    onKeyDown=${edit}
-    data-test=${`drawn:${field.key}`}
-  >
-    <rect x=${anchor === 'end' ? x - width + 5 : x - 5} y=${y - 13} width=${width} height="18" rx="4" />
-    <text x=${x} y=${y} text-anchor=${anchor}>${shown}</text>
-  </g>`;
-}
-
-/**
- * Arrows of the vibration by its direction; across the sliding it points out of the drawing.
- * @type {Record<string, string>}
- */
-const VIBRATIONS = {
-  normal: 'M168 90 v22 m-3 -17 3 -5 3 5 m-6 12 3 5 3 -5',
-  along: 'M164 104 h24 m-19 -3 -5 3 5 3 m14 -6 5 3 -5 3',
-  across: 'M162 102 a6 6 0 1 0 12 0 a6 6 0 1 0 -12 0 m5 0 h2',
-  torsional: 'M163 106 a13 5 0 0 1 24 0 m-25 -4 1 4 4 0 m21 -4 -1 4 -4 0',
-};
-
-/**
- * Drawing of a rig with its values; a click on a value opens its field.
- * @param {{drawing: RigView['drawing'], fields: RigField[], rig: RigState}} props
- */
-const Schematic = ({
-  drawing,
-  fields,
-  rig,
-}) => html`<svg class="schematic" viewBox="0 0 270 172" role="group" aria-label="Drawing of the rig with its values">
-  <g class="schematic-lines" aria-hidden="true">
-    ${
-      drawing.has_structure &&
-      html`<path d="M20 62 H112" class="thick" /><path d="M20 52 v20 M14 54 l6 6 M14 62 l6 6 M14 70 l6 6" />`
-    }
-    <path d="M135 6 v22 m-4 -6 4 6 4 -6 M96 150 H166 m-6 -4 6 4 -6 4" class="force" />
-    <path d=${VIBRATIONS[drawing.direction] ?? VIBRATIONS.along} class="force" />
-    ${drawing.direction !== 'normal' && html`<text x="194" y="108">${drawing.direction}</text>`}
-    <rect x="112" y="32" width="46" height="52" rx="3" class="part" />
-    ${
-      drawing.has_drive &&
-      html`
-        <path d="M112 42 H158 M112 50 H158 M112 58 H158 M112 66 H158 M112 74 H158" class="thin" />
-        <path d="M88 36 q4 -8 8 0 t8 0 M104 36 H112" class="wave" />
-      `
-    }
-    <path d="M118 84 H152 V100 L144 112 H126 L118 100 Z" class="part is-pin" />
-    <path d="M126 112 H144" class="contact" />
-    <path d="M74 103 L122 111" class="thin" />
-    <rect x="40" y="113" width="190" height="20" rx="3" class="part is-disc" />
-  </g>
-  ${fields
-    .filter(({key}) => key in PLACES)
-    .map((field) => html`<${Value} key=${field.key} field=${field} text=${textOf(rig, field)} />`)}
-</svg>`;
-
-/**
  * Make the text of a rig file the rig of the state, and go to a page.
  * @param {string} name
  * @param {string} text
@@ -201,7 +116,6 @@ export function RigPanel({extra}) {
   /** @param {string} key @param {string|null} text @param {boolean} isMoving */
   const onText = (key, text, isMoving) => setEntry(key, text, {replace: isMoving});
   const fields = view?.fields ?? [];
-  const first = fields.filter((field) => field.is_first);
   const others = fields.filter((field) => !field.is_first);
   const placed = new Set(fields.flatMap((field) => [field.key, spreadKey(field.key)]));
   const homeless = [...faults].filter(([key]) => !placed.has(key));
@@ -210,28 +124,34 @@ export function RigPanel({extra}) {
   useEffect(() => {
     if (isAll) entries.current.open = true; // an entry beyond the operating point is refused
   }, [isAll]);
+  /** @param {RigField} field */
+  const entryOf = (field) => ({
+    key: `${rig.name} ${field.key}`,
+    field,
+    text: textOf(rig, field),
+    spread: rig.changes[spreadKey(field.key)],
+    isChanged: field.key in rig.changes,
+    refusal: faults.get(field.key),
+    spreadRefusal: faults.get(spreadKey(field.key)),
+    onText,
+    onSettle: settle,
+  });
   /** @param {RigField[]} some */
-  const list = (some) =>
-    some.map(
-      (field) => html`<${Field}
-        key=${`${rig.name} ${field.key}`}
-        field=${field}
-        text=${textOf(rig, field)}
-        spread=${rig.changes[spreadKey(field.key)]}
-        isChanged=${field.key in rig.changes}
-        refusal=${faults.get(field.key)}
-        spreadRefusal=${faults.get(spreadKey(field.key))}
-        onText=${onText}
-        onSettle=${settle}
-      />`,
-    );
+  const list = (some) => some.map((field) => html`<${Field} ...${entryOf(field)} />`);
   const count = Object.keys(rig.changes).length;
   return html`<aside class="rig" aria-label="Rig" data-test="rig-panel">
     <${RigChoice} view=${view} />
     ${!view && !failure && html`<${Loading}>Reading the rig…<//>`}
-    ${view && html`<${Schematic} drawing=${view.drawing} fields=${fields} rig=${rig} />`}
+    ${
+      view &&
+      html`<${ContactForm}
+        key=${rig.name}
+        sentence=${view.sentence}
+        drawing=${view.drawing}
+        entries=${fields.filter((field) => field.is_first).map(entryOf)}
+      />`
+    }
     ${homeless.map(([key, text]) => html`<${Refusal} key=${key} text=${text} role="alert" data-test="rig-refusal" />`)}
-    <div class="fields">${list(first)}</div>
     ${
       count > 0 &&
       html`<${Button}
