@@ -12,6 +12,8 @@ from sonolube.errors import InvalidInput
 from sonolube.prediction.evidence_posterior import EvidencePosterior, LearnedSource, read_evidence_posterior
 from sonolube.prediction.posterior import learned
 from sonolube.prediction.within_plane import plane_posterior
+from sonolube.tasks.design.sweep import ParametricStudyAnswer
+from sonolube.tasks.lab.protocol_run import RunAnswer
 from sonolube.tasks.own_evidence import evidence_of
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
@@ -100,8 +102,9 @@ def test_friction_has_the_interval_that_predict_has(changes: list[str], file: Pa
 
 def test_studies_and_control_have_the_interval_that_predict_has(file: Path) -> None:
     expected = np.quantile(sl.predict(RIG, evidence=file)["friction_ratio"], [0.1, 0.9])
-    study = sl.sweep(RIG, of="voltage", lowest="14V", highest="28V", points=2, evidence=file).study
-    found = [study[name].values.ravel()[-1] for name in ("lowest_predicted_ratio", "highest_predicted_ratio")]
+    answer = sl.sweep(RIG, of="voltage", lowest="14V", highest="28V", points=2, evidence=file)
+    assert isinstance(answer, ParametricStudyAnswer)
+    found = [answer.study[name].values.ravel()[-1] for name in ("lowest_predicted_ratio", "highest_predicted_ratio")]
     assert found == approx(expected, rel=0.02)
     reach = sl.control(RIG, duration="40ms", evidence=file).object()["predicted_least_friction"]["interval_80"]
     force = sl.predict(RIG, evidence=file)["friction_force"].quantile([0.1, 0.9]).values
@@ -111,10 +114,9 @@ def test_studies_and_control_have_the_interval_that_predict_has(file: Path) -> N
 def test_a_virtual_tribometer_draws_its_friction_from_the_posterior(file: Path, tmp_path: Path) -> None:
     protocol = tmp_path / "vibrated.toml"
     protocol.write_text(_VIBRATED)
-    without, within = (
-        sl.lab.run(protocol, rig=MAPPED, seed=2, out=tmp_path, evidence=each).run for each in (None, file)
-    )
-    before, after = (each.dataset()["friction_force"].values[-100:].mean() for each in (without, within))
+    answers = [sl.lab.run(protocol, rig=MAPPED, seed=2, out=tmp_path, evidence=each) for each in (None, file)]
+    runs = [each.run for each in answers if isinstance(each, RunAnswer)]
+    before, after = (each.dataset()["friction_force"].values[-100:].mean() for each in runs)
     assert after > 1.1 * before  # over twice the length vibration does less
     assert "3 points of Own (own.json)" in str(within.facts["evidence"])
     assert "evidence" not in without.facts

@@ -337,7 +337,11 @@ class SupervisedRun(ABC):
         name = monitor_of(acquisition.channels, sample_rate=rate, frequency=setting.frequency)
         if not name:
             return
-        facts = {"voltage_peak_to_peak": setting.voltage_peak_to_peak, "frequency": setting.frequency, "channel": name}
+        facts: dict[str, str | float] = {
+            "voltage_peak_to_peak": setting.voltage_peak_to_peak,
+            "frequency": setting.frequency,
+            "channel": name,
+        }
         try:
             given = acquisition.start([name], sample_rate=rate)
         except DeviceLost:

@@ -105,7 +105,7 @@ def mode_frequency_range(collar: Collar, kind: BoreMotion, *, assumed: tuple[str
     return low, high
 
 
-def mode_near(frequency: float, collar: Collar, *, open_top: bool) -> tuple[float, Floats, Floats]:
+def mode_near(collar: Collar, *, frequency: float, open_top: bool) -> tuple[float, Floats, Floats]:
     """Mode that a voltage drives nearest to a frequency: its own in Hz, places and displacements in the middle plane.
 
     Both of shape (n, 2), by a coarse mesh, which is fine enough to be drawn.

@@ -286,11 +286,12 @@ def _modes() -> "Figure":
         ("final, top open", FINAL_COLLAR, opened, True),
     )
     for axes, (title, collar, near, is_open) in zip(panels, cases, strict=True):
-        frequency, places, shape = mode_near(near, collar, open_top=is_open)
+        frequency, places, shape = mode_near(collar, frequency=near, open_top=is_open)
         moved = 1e3 * (places + _DRAWN * np.ptp(places) * shape / np.abs(shape).max())
         size = np.linalg.norm(shape, axis=1)
         axes.plot(*(1e3 * places.T), ".", color="0.8", ms=1.5)
-        points = axes.scatter(*moved.T, c=size / size.max(), s=3, cmap="viridis", vmin=0, vmax=1)
+        x, y = moved.T
+        points = axes.scatter(x, y, c=size / size.max(), s=3, cmap="viridis", vmin=0, vmax=1)
         axes.set(xlabel="Across the stacks [mm]", aspect="equal")
         axes.set_title(f"{title}\n{1e-3 * frequency:.1f} kHz", fontsize=9)
         axes.grid(visible=False)

@@ -37,7 +37,8 @@ def test_what_is_open_or_missing_in_a_section_is_so_in_its_summary() -> None:
 
 def test_the_abstract_promises_less_error_than_the_conclusions() -> None:
     (row,) = (row for row in summary_rows({}) if row.id == "abstract-model-error")
-    assert (row.verdict, row.errata, row.computed) == (Verdict.MISPRINT, ("E36",), approx(20.0))
+    assert (row.verdict, row.errata) == (Verdict.MISPRINT, ("E36",))
+    assert row.computed == approx(20.0)
 
 
 def test_every_number_of_the_conclusions_is_judged_but_what_it_wants_of_another_rig() -> None:

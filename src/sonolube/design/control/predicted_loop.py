@@ -130,7 +130,8 @@ def predicted_forces(study: ControlDesign, found: PosteriorLoop, *, level: Array
     ndarray, shape (3, n)
         NaN beyond the highest level of the plant.
     """
-    return np.array([np.interp(level, study.plant.level, row, right=np.nan) for row in found.force])
+    levels = np.asarray(level, dtype=np.float64)
+    return np.array([np.interp(levels, study.plant.level, row, right=np.nan) for row in found.force])
 
 
 def with_posterior(run: "xr.Dataset", study: ControlDesign, found: PosteriorLoop | str) -> "xr.Dataset":

@@ -69,8 +69,9 @@ class Dahl(FrictionModel):
                 np.zeros(n) if each is None else np.roll(each, -1) - each for each in (sampled.along, sampled.across)
             )
             slides = along + v_r[:, np.newaxis] / (motion.frequency * n)
-            rows = [np.broadcast_to(each, slides.shape).copy() for each in (stiffness, limit)]
-            forces = steady_period_mean_force(*rows, slides, np.hypot(slides, across), np.full(slides.shape, 1 / n))
-            return forces / (coefficient * motion.normal_load)
+            rows, limits = (np.broadcast_to(each, slides.shape).copy() for each in (stiffness, limit))
+            paths, weights = np.hypot(slides, across), np.full(slides.shape, 1 / n)
+            forces = steady_period_mean_force(rows, limits, slides, paths, weights)
+            return np.asarray(forces / (coefficient * motion.normal_load))
 
         return richardson_period_mean(normalized_friction, motion)
