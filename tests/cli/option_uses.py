@@ -441,6 +441,7 @@ MODES = {
             "--runs": RUNS,
             "--mapping": "FOLDER/reduced.toml",
             "--target-reduction": "60%",
+            **POSTERIOR,
             "--form": "svg",
             "--load": "2N",
             "--amplitude": "per-volt",

@@ -68,6 +68,7 @@ TASKS: dict[str, Callable[[Path], Any]] = {
     "friction": lambda file: sl.friction(RIG, evidence=file),
     "uncertainty": lambda file: sl.uncertainty(RIGS / "tribometer_uncertain.toml", samples=32, evidence=file),
     "map": lambda file: sl.map(MAPPED, over=AXES, target_reduction="60%", evidence=file),
+    "map without a target": lambda file: sl.map(MAPPED, over=AXES, evidence=file),
     "plan": lambda file: sl.plan(RIG, speed="20:80:3mm/s", vibration="1:2.5:2um", points=2, evidence=file),
     "sweep": lambda file: sl.sweep(RIG, of="speed", points=3, evidence=file),
     "sweep of keys": lambda file: sl.sweep(RIG, over={"sliding.sliding_speed": "20mm/s,50mm/s"}, evidence=file),
@@ -134,8 +135,8 @@ def test_a_file_and_its_posterior_are_one_argument(file: Path) -> None:
 def test_evidence_that_would_not_be_used_is_refused(file: Path) -> None:
     with raises(InvalidInput, match="evidence has no meaning without interval"):
         sl.friction(RIG, interval=False, evidence=file)
-    with raises(InvalidInput, match="evidence has no meaning without target_reduction"):
-        sl.map(MAPPED, over=AXES, evidence=file)
+    with raises(InvalidInput, match=r"evidence has no meaning where nothing is predicted: .*soft or floating"):
+        sl.map(RIGS / "pom_on_steel.toml", over={"sliding.sliding_speed": "10mm/s,20mm/s"}, evidence=file)
     with raises(InvalidInput, match="evidence has no meaning without interval of friction_ratio"):
         sl.uncertainty(RIGS / "tribometer_uncertain.toml", of="vibration_amplitude", samples=32, evidence=file)
     with raises(InvalidInput, match="evidence has no meaning with dry_run"):

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from pytest import raises
+from pytest import approx, raises
 from tests.names import names_of
 from tests.same import same
 
@@ -47,6 +47,28 @@ def test_other_axes_as_text_and_in_si_make_the_map_of_the_command(
     assert mapped.plot().axes
 
 
+def test_the_greatest_reduction_has_the_interval_that_predict_has_there(rig: sl.Rig) -> None:
+    answer = sl.map(rig, over=OVER)
+    told = answer.json_object()
+    at = told["most_reduction"]
+    changes = [f"sliding.sliding_speed={at['sliding_speed']['value']} m/s", f"{VOLTAGE}={at[VOLTAGE[6:]]['value']} V"]
+    there = sl.read_rig(rig.file, changes=changes)
+    expected = np.quantile(sl.predict(there)["friction_ratio"], [0.1, 0.5, 0.9])
+    (low, high), median = (told["predicted_friction_ratio"][name] for name in ("interval_80", "median"))
+    assert [low, median, high] == approx(expected, abs=0.015)  # of 1000 draws and of 4000
+    text = f"predicted there  {1 - median:.2g}, {1 - high:.2g} to {1 - low:.2g} (80 %, `sonolube predict`)"
+    assert text in " ".join(answer.text().split("\n"))
+    assert ("predicted there", text.partition("there  ")[2]) in answer.page().facts
+
+
+def test_a_map_of_a_rig_without_a_prediction_says_why(rigs: Path) -> None:
+    answer = sl.map(rigs / "pom_on_steel.toml", over={"sliding.sliding_speed": "10mm/s,20mm/s"})
+    found = answer.json_object()["predicted_friction_ratio"]
+    assert (found["median"], found["interval_80"]) == (None, None)
+    assert "soft or floating contact" in found["reason"]
+    assert "predicted there" in answer.text()
+
+
 def test_runs_may_be_bytes_and_the_map_stays_that_of_the_model(rig: sl.Rig, tmp_path: Path) -> None:
     (tmp_path / "runs.csv").write_text(RUNS, encoding="utf-8")
     by_path, by_bytes = (
@@ -54,7 +76,9 @@ def test_runs_may_be_bytes_and_the_map_stays_that_of_the_model(rig: sl.Rig, tmp_
     )
     assert list(by_path.figures()) == ["power_map-velocity-power", "power_map-velocity-power-measured"]
     same(by_path.json_object(), by_bytes.json_object())
-    same(by_bytes.dataset(), map_of(rig, over=OVER).dataset())
+    told = "the runs state neither amplitude nor voltage, so that the prediction rests on published tests alone"
+    assert told in by_bytes.caveats()
+    same(*(each.dataset().assign_attrs(caveats="") for each in (by_bytes, map_of(rig, over=OVER))))
 
 
 def test_arguments_are_refused_by_their_names(rig: sl.Rig) -> None:

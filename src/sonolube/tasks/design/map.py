@@ -13,10 +13,12 @@ from sonolube.design.map_chances import chance_chart, chance_facts, chance_objec
 from sonolube.design.maps import default_axes
 from sonolube.design.predicted_results import with_verdicts
 from sonolube.design.runs_map import require_mappable, runs_map, runs_on_map
-from sonolube.errors import InvalidInput
+from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.measurement.run_columns import runs_help
 from sonolube.models.friction.models.range_check import ratio_caveats
+from sonolube.prediction.applicability import FrictionInterval
 from sonolube.prediction.chances import reduction_chances
+from sonolube.prediction.evidence_posterior import EvidencePosterior
 from sonolube.prediction.predicted_points import PredictedRig
 from sonolube.prediction.verdict import verdict_counts
 from sonolube.report import Drawing, Page
@@ -38,7 +40,7 @@ _CHANCE_CAPTION = (
     "Chance that the target reduction is reached, by the distribution of `sonolube predict`: with the errors of the"
     " model and of what is not known of the rig."
 )
-_NO_AMPLITUDE = "the runs state neither amplitude nor voltage, so that the chances rest on published tests alone"
+_NO_AMPLITUDE = "the runs state neither amplitude nor voltage, so that the prediction rests on published tests alone"
 _FORMS = ("png", "svg", "pdf")  # of figures, where none is given
 _OVER = KeyValues(
     "Other values of an axis, first:last:count or one,two,...: sliding.sliding_speed, contact.normal_load,"
@@ -90,10 +92,8 @@ def map(  # noqa: A001 - the command's name
     >>> round(float(answer["friction_reduction"].max()), 2)
     0.95
     """
-    if target_reduction is None:
-        refuse_unused("evidence", because=f"without {shown('target_reduction')}, whose chance rests on it")
     known = rig_of(rig)
-    learned = None if target_reduction is None else evidence_of(evidence, known)
+    learned = evidence_of(evidence, known)
     refuse_replaced(known, over or {})
     chosen = _kind(known, kind)
     axes = _axes(known, chosen, over or {})
@@ -108,18 +108,15 @@ def map(  # noqa: A001 - the command's name
     with stage("mapping"):
         mapped = design.MAPS[chosen](known, **axes)
     target, wanted = target_chance(target_reduction, confidence)
-    learned_from: tuple[str, ...] = ()
-    chances = None
-    if target is not None:
+    with stage("predicting"):
+        predicted = _predicted(known, _with_amplitude(measured), learned, is_needed=target is not None)
+    if target is not None and predicted.chances is not None:
         with stage("chances"):
-            chances = reduction_chances(known, runs=_with_amplitude(measured), evidence=learned)
-            mapped = with_chances(mapped, chances, friction_reduction=target)
-        learned_from = chances.caveats
-    predicted = PredictedRig(rig=known, chances=chances)
+            mapped = with_chances(mapped, predicted.chances, friction_reduction=target)
     mapped = with_verdicts(mapped, predicted)
     left_out: tuple[str, ...] = ()
     if measured is not None:
-        unused = target is not None and _with_amplitude(measured) is None
+        unused = _with_amplitude(measured) is None
         measured, left_out = runs_on_map(measured, known, mapped)
         left_out = (*left_out, *((_NO_AMPLITUDE,) if unused else ()))
     return MapAnswer(
@@ -130,7 +127,6 @@ def map(  # noqa: A001 - the command's name
         forms=tuple(form) or _FORMS,
         left_out=left_out,
         confidence=wanted,
-        learned_from=learned_from,
         predicted=predicted,
     )
 
@@ -147,18 +143,18 @@ class MapAnswer(Answer):
     predicted: PredictedRig
     left_out: tuple[str, ...] = ()
     confidence: float | None = None
-    learned_from: tuple[str, ...] = ()
 
     def blocks(self) -> Sequence[Block]:
-        """Verdicts, greatest reduction, ridge, chance of the target, and points without a result."""
-        title, *rest = results.map_blocks(self.rig, self.mapped)
-        chances = [Rows(self._chances)] if self._chances else []
-        return [title, *own_point_lines(self.rig), *verdict_lines(self.mapped), *rest, *chances]
+        """Verdicts, chance of the target, greatest reduction, ridge, and points without a result."""
+        title, facts = results.map_blocks(self.rig, self.mapped, results.predicted_text(self._predicted_there))
+        rows = Rows([*self._chances, *facts.rows])
+        return [title, *own_point_lines(self.rig), *verdict_lines(self.mapped), rows]
 
     def object(self) -> dict[str, Any]:
         """Greatest reduction with the point where it occurs, and the number of points without a result."""
         found = results.map_object(self.rig, self.mapped) | own_point_object(self.rig)
         found |= {"verdicts": verdict_counts(self.mapped["verdict"].values)}
+        found |= results.predicted_there_object(self._predicted_there)
         if not self._has_chances:
             return found
         return found | chance_object(self.mapped, confidence=self.confidence)
@@ -167,8 +163,7 @@ class MapAnswer(Answer):
         """Caveats of the rig at its own point and of ratios on the map, runs without a place, and own evidence."""
         ratios = 1 - self.mapped["friction_reduction"].values
         tested = self.predicted.caveats(self.mapped["verdict"].values)
-        own = (*self.left_out, *self.learned_from)
-        return (*operating_caveats(self.rig), *ratio_caveats(friction_ratio=ratios), *tested, *own)
+        return (*operating_caveats(self.rig), *ratio_caveats(friction_ratio=ratios), *tested, *self.left_out)
 
     def figures(self) -> Mapping[str, Drawing]:
         """Contours of the map, and those between the measured runs."""
@@ -201,9 +196,15 @@ class MapAnswer(Answer):
 
     def page(self) -> Page:
         """Page `map.html`."""
-        page = results.map_page(self.rig, self.mapped, self.runs, self.interpolated)
+        there = results.predicted_text(self._predicted_there)
+        page = results.map_page(self.rig, self.mapped, self.runs, self.interpolated, there)
         verdicts = [("points", line.strip()) for line in verdict_lines(self.mapped)]
-        return replace(page, facts=[*verdicts, *page.facts, *self._chances])
+        return replace(page, facts=[*verdicts, *self._chances, *page.facts])
+
+    @property
+    def _predicted_there(self) -> FrictionInterval | None:
+        """Predicted friction ratio where the map has its greatest reduction."""
+        return results.predicted_there(self.mapped, self.predicted)
 
     @property
     def _has_chances(self) -> bool:
@@ -219,6 +220,20 @@ class MapAnswer(Answer):
     def _name(self) -> str:
         """Name of the files, without ending."""
         return f"{self.rig.name}-{self.mapped.attrs['map']}"
+
+
+def _predicted(
+    rig: Rig, runs: "Dataset | None", evidence: EvidencePosterior | None, *, is_needed: bool
+) -> PredictedRig:
+    """Prediction of a rig on a map; why there is none, which is refused where a chance is asked for."""
+    try:
+        return PredictedRig(rig=rig, chances=reduction_chances(rig, runs=runs, evidence=evidence))
+    except SonolubeError as refusal:
+        if is_needed:
+            raise
+        reason = str(refusal).removeprefix(f"{rig.title}: ")
+        refuse_unused("evidence", because=f"where nothing is predicted: {reason}")
+        return PredictedRig(rig=rig, chances=None, reason=reason)
 
 
 def _with_amplitude(runs: "Dataset | None") -> "Dataset | None":

@@ -9,7 +9,9 @@ from sonolube.design.efficiency import EfficiencyCalibration
 from sonolube.design.map_figures import panels_text
 from sonolube.design.point_statistics import extreme_point, failure_counts
 from sonolube.design.runs_map import MIN_RUNS
-from sonolube.report.blocks import Block, Rows
+from sonolube.prediction.applicability import FrictionInterval
+from sonolube.prediction.predicted_points import PredictedRig
+from sonolube.report.blocks import Rows
 from sonolube.report.page import Page, PageTable
 from sonolube.report.results.design.sweep import status_tables
 from sonolube.report.results.design.uncertainty import in_sentence
@@ -31,13 +33,13 @@ if TYPE_CHECKING:
 _SETTINGS = ("sliding_speed", "normal_load", "frequency", VOLTAGE.name, AMPLITUDE.name)
 
 
-def map_blocks(rig: Rig, mapped: "xr.Dataset") -> list[Block]:
-    """Greatest reduction, ridge, and points without a result."""
+def map_blocks(rig: Rig, mapped: "xr.Dataset", predicted: str = "") -> tuple[str, Rows]:
+    """Greatest reduction and what is predicted there, ridge, and points without a result."""
     failures = [("without result", f"{count}: {reason}") for reason, count in _failures(mapped).items()]
-    return [
+    return (
         f"{rig.title}, {mapped['status'].size} points, {friction_model_text(rig)}",
-        Rows([*amplitude_rows(rig), *_facts(mapped), *failures]),
-    ]
+        Rows([*_facts(mapped, predicted), *amplitude_rows(rig), *failures]),
+    )
 
 
 def map_object(rig: Rig, mapped: "xr.Dataset") -> dict[str, Any]:
@@ -54,15 +56,17 @@ def map_object(rig: Rig, mapped: "xr.Dataset") -> dict[str, Any]:
     }
 
 
-def map_page(rig: Rig, mapped: "xr.Dataset", runs: "xr.Dataset | None", interpolated: "xr.Dataset | None") -> Page:
-    """Page of a map: greatest reduction, ridge, measured runs, and statuses."""
+def map_page(
+    rig: Rig, mapped: "xr.Dataset", runs: "xr.Dataset | None", interpolated: "xr.Dataset | None", predicted: str = ""
+) -> Page:
+    """Page of a map: greatest reduction and what is predicted there, ridge, measured runs, and statuses."""
     across, up, panel = map_layout(mapped)
     over = " and ".join(in_sentence(name).partition(",")[0] for name in (across, up))
     return Page(
         name="map",
         title=f"Friction reduction over {over}: {rig.title}",
         settings=rig_settings(rig),
-        facts=[("points", f"{mapped['status'].size}"), *_facts(mapped), *_run_facts(runs, interpolated)],
+        facts=[("points", f"{mapped['status'].size}"), *_facts(mapped, predicted), *_run_facts(runs, interpolated)],
         tables=[*_panel_tables(mapped, panel), *status_tables(mapped, _failures(mapped))],
     )
 
@@ -81,6 +85,33 @@ def _greatest(mapped: "xr.Dataset") -> dict[str, float]:
     return {name: float(point[name]) for name in names if point[name].ndim == 0 and np.isfinite(point[name])}
 
 
+def predicted_there(mapped: "xr.Dataset", predicted: PredictedRig) -> FrictionInterval | None:
+    """Predicted friction ratio where a map has its greatest reduction; None where it has none."""
+    at = _greatest(mapped)
+    if not at:
+        return None
+    if predicted.chances is None:
+        return FrictionInterval(reason=predicted.reason)
+    settings = {name: at.get(name) for name in ("frequency", "sliding_speed")}
+    low, median, high = predicted.chances.interval(vibration_amplitude=at[AMPLITUDE.name], **settings)
+    return FrictionInterval(low=low, median=median, high=high)
+
+
+def predicted_text(found: FrictionInterval | None) -> str:
+    """Predicted reduction in words, or why there is none."""
+    if found is None or found.low is None or found.median is None or found.high is None:
+        return "" if found is None else found.text
+    return f"{1 - found.median:.2g}, {1 - found.high:.2g} to {1 - found.low:.2g} (80 %, `sonolube predict`)"
+
+
+def predicted_there_object(found: FrictionInterval | None) -> dict[str, Any]:
+    """The same for JSON, as a friction ratio."""
+    if found is None:
+        return {}
+    ends = None if found.low is None else [found.low, found.high]
+    return {"predicted_friction_ratio": {"median": found.median, "interval_80": ends, "reason": found.reason or None}}
+
+
 def _power(greatest: dict[str, float]) -> PowerToSupply | None:
     """Power to supply at the point of the greatest reduction."""
     return power_to_supply(
@@ -88,15 +119,17 @@ def _power(greatest: dict[str, float]) -> PowerToSupply | None:
     )
 
 
-def _facts(mapped: "xr.Dataset") -> list[tuple[str, str]]:
-    """Greatest reduction, and the ridge where the map has one."""
-    found = [("panels", text)] if (text := panels_text(mapped)) else []
+def _facts(mapped: "xr.Dataset", predicted: str) -> list[tuple[str, str]]:
+    """Greatest reduction, what is predicted there, and the ridge where the map has one."""
+    found: list[tuple[str, str]] = []
     greatest = _greatest(mapped)
     values = [format_si(greatest[name], quantity(name).unit) for name in greatest if name not in POWERS]
     power = _power(greatest)
     if values:
         supplied = [] if power is None else [f"{power.text} to supply"]
         found.append(("most reduction", f"{values[0]} at {', '.join([*values[1:], *supplied])}"))
+        found += [("predicted there", predicted)] if predicted else []
+    found += [("panels", text)] if (text := panels_text(mapped)) else []
     if power is not None:
         found.append(("energy", power.energy_balance))
     ridge = _ridge(mapped)
