@@ -25,6 +25,7 @@ from sonolube.tasks.lab import protocol_run
 from sonolube.tasks.lab.protocol_run import RunAnswer
 from sonolube.tasks.progress import TaskCancelled
 
+LAB = Path(__file__).parents[3] / "examples" / "lab"
 RIG = Path(__file__).parents[3] / "examples" / "rigs" / "power_map.toml"
 ASKING = """title = "asking"
 source = "none"
@@ -219,6 +220,44 @@ def test_a_dry_run_touches_nothing(folder: Path, protocol: Path) -> None:
     assert answer.object()["duration"]["value"] == approx(1.0)
     with raises(InvalidInput, match="yes has no meaning with dry_run, which runs nothing"):
         lab.run(protocol, rig=RIG, dry_run=True, yes=True)
+
+
+DRIVEN = """title = "driven"
+source = "none"
+
+[limits]
+voltage_maximum = "85 V"
+duration_maximum = "2 s"
+
+[[steps]]
+kind = "motor_speed"
+rotation_speed = "1 1/s"
+
+[[steps]]
+kind = "drive"
+voltage_peak_to_peak = "40 V"
+frequency = "22 kHz"
+
+[[steps]]
+kind = "wait"
+duration = "1 s"
+"""
+
+
+def test_a_dry_run_on_a_device_map_says_what_its_devices_cannot_do_and_do_not_tell(tmp_path: Path) -> None:
+    (tmp_path / "driven.toml").write_text(DRIVEN)
+    known, blind = LAB / "tektronix_afg.toml", tmp_path / "blind.toml"
+    (tmp_path / "normal_load.csv").write_bytes((LAB / "normal_load.csv").read_bytes())
+    blind.write_text(known.read_text().replace('"500 kHz"', '"100 kHz"'))  # fewer than five samples a period
+    told = lab.run(tmp_path / "driven.toml", known, rig=RIG, dry_run=True)
+    assert "drive not read back: combination, trips" in told.caveats()
+    assert "4 V peak to peak at 22 kHz" in told.assumptions()["self-test"]  # a tenth of the first
+    assert "157 mm/s" in " ".join(told.object()["lines"])  # a turn a second of 50 mm, by the map
+    unseen = lab.run(tmp_path / "driven.toml", blind, dry_run=True)
+    assert unseen.assumptions()["self-test"].startswith("none: no channel of the map shows the voltage")
+    (tmp_path / "driven.toml").write_text(DRIVEN.replace('"40 V"', '"164 V"'))
+    beyond = lab.run(tmp_path / "driven.toml", known, dry_run=True)
+    assert any("82 V" in each and "at most 80 V" in each for each in beyond.object()["refusals"])
 
 
 def test_entries_that_were_replaced_stand_in_the_record_of_a_virtual_run(folder: Path, protocol: Path) -> None:

@@ -18,8 +18,16 @@ from sonolube.laboratory.drivers import read_device_map, unfulfilled
 from sonolube.laboratory.dry_run import DryRun, dry_run_chart
 from sonolube.laboratory.records import Run, export_run, read_run
 from sonolube.laboratory.rehearsal import Rehearsal, rehearsal
-from sonolube.laboratory.run_plan import RunRequest, begin_record, planned_run, require_free
+from sonolube.laboratory.run_plan import (
+    RunRequest,
+    begin_record,
+    drive_setting,
+    groove_diameter,
+    planned_run,
+    require_free,
+)
 from sonolube.laboratory.runner import Operator
+from sonolube.laboratory.set_and_measured import monitor_of, self_test_setting
 from sonolube.laboratory.switch_off import ready_devices
 from sonolube.laboratory.virtual_tribometer import (
     GROOVE_DIAMETER,
@@ -327,7 +335,7 @@ def run(
     if dry_run:
         unused = "evidence", "seed", "real_time", "anyway", "yes", "no_self_test", "tag", "fact", "out"
         refuse_unused(*unused, because=f"with {shown('dry_run')}, which runs nothing")
-        return DryRunAnswer(protocol=read, found=dry_runs.dry_run(read, rig=known))
+        return DryRunAnswer(protocol=read, found=_dry_run(read, known, device_file(device_map)))
     if not anyway:
         _require_possible_dry(read, known)
     file = device_file(device_map)
@@ -416,16 +424,37 @@ def virtual(
 
 def _planned(wanted: RunRequest, simulated: VirtualTribometer | Rehearsal, file: Path | None) -> DryRunAnswer:
     """Plan of a virtual run, with what devices of a map cannot do and the time that it is expected to take."""
-    found = dry_runs.dry_run(wanted.protocol, rig=wanted.rig)
-    if file is not None:
-        beyond = unfulfilled(read_device_map(file), wanted.protocol)
-        found = replace(found, refusals=(*found.refusals, *beyond))
+    found = _dry_run(wanted.protocol, wanted.rig, file)
     return DryRunAnswer(
         protocol=wanted.protocol,
         found=found,
         expected=None if found.refusals else simulated.expected_time(wanted.protocol),
         rehearsed=simulated if isinstance(simulated, Rehearsal) else None,
         learned_from=wanted.evidence_caveats,
+    )
+
+
+def _dry_run(protocol: Protocol, rig: Rig | None, file: Path | None) -> DryRun:
+    """Plan of a run, with what devices of a map cannot do, do not read back and do not show of the voltage."""
+    if file is None:
+        return dry_runs.dry_run(protocol, rig=rig)
+    device_map = read_device_map(file)
+    devices, metadata = device_map.devices(), protocol.metadata
+    on_disc = metadata.model_copy(update={"groove_diameter": groove_diameter(protocol, devices)})
+    found = dry_runs.dry_run(protocol.model_copy(update={"metadata": on_disc}), rig=rig)
+    untold, assumptions = devices.description.get("drive not read back"), dict(found.assumptions)
+    setting = self_test_setting(next(filter(None, map(drive_setting, flattened(protocol))), None))
+    if setting is not None:
+        highest = device_map.entries.acquisition.total_rate_maximum
+        shown_by = monitor_of(devices.acquisition.channels, sample_rate=highest, frequency=setting.frequency)
+        if not shown_by:
+            assumptions["self-test"] = "none: no channel of the map shows the voltage of the drive, nor is it compared"
+    return replace(
+        found,
+        protocol=protocol,
+        refusals=(*found.refusals, *unfulfilled(device_map, protocol)),
+        caveats=(*found.caveats, *([f"drive not read back: {untold}"] if untold else [])),
+        assumptions=assumptions,
     )
 
 
