@@ -11,13 +11,14 @@ from pytest import approx, raises
 from tests.laboratory.simulated_rig import SimulatedRig
 
 from sonolube.errors import InvalidInput, SeveralFaults
-from sonolube.facts.protocol import Check, Protocol, SetPoint, protocol_from
+from sonolube.facts.protocol import Check, Protocol, SetPoint, flattened, protocol_from
 from sonolube.laboratory import Channel, Devices, DriveSetting
 from sonolube.laboratory.interlocks import DriveSampling, RunLimits, recorded_channels, run_limits
 from sonolube.laboratory.records import read_run
 from sonolube.laboratory.run_plan import (
     CheckedValue,
     RunRequest,
+    _faults,
     begin_record,
     drive_setting,
     groove_diameter,
@@ -142,6 +143,24 @@ def test_channels_that_are_missing_are_told_by_the_step_that_records_them() -> N
     alone = impossibilities(protocol(acquire("oil"), WAIT), beside)
     assert alone == ("step 1: records no channel of simulated rig; add one",)
     assert impossibilities(protocol(acquire("oil", "voltage"), WAIT), beside) == ()
+
+
+def test_a_missing_channel_counts_as_no_value_beside_the_fault_of_its_step() -> None:
+    wanted = protocol(acquire("normal_load"), WAIT)
+    (fault,) = _faults(flattened(wanted)[0], None, SimulatedRig().devices(), 0.05)
+    assert fault[:3] == ("1", "channels", 0.0)
+    (none_of_its_own,) = _faults(
+        flattened(wanted)[0], None, replace(SimulatedRig().devices(), further={"slow": Loaded()}), 0.05
+    )
+    assert none_of_its_own[:3] == ("1", "channels", 0.0)
+
+
+class Loaded(SimulatedRig):
+    """A further acquisition with a channel of the load."""
+
+    @property
+    def channels(self) -> Mapping[str, Channel]:
+        return {"normal_load": Channel(name="normal_load", quantity="normal_load", sample_rate=5.0)}
 
 
 def test_one_impossibility_is_refused_by_itself_and_several_together() -> None:

@@ -299,3 +299,32 @@ def test_a_stretch_of_one_voltage_is_not_searched_for_steps(tmp_path: Path, monk
     # steps that are none leave the means of both levels
     assert [row[4:6] for row in rows] == [["0.0", ""], ["20.0", "21000.0"]]
     assert [float(row[6]) for row in rows] == approx([1.0, 0.4], abs=2e-3)
+
+
+PROTOCOL = """title = "speeds"
+source = "none"
+[limits]
+voltage_maximum = "30 V"
+duration_maximum = "60 s"
+[metadata]
+normal_load = "3 N"
+"""
+SPEED = '[[steps]]\nkind = "motor_speed"\nsliding_speed = "{} mm/s"\n[[steps]]\nkind = "wait"\nduration = "4 s"\n'
+
+
+@pytest.mark.parametrize(("speeds", "lines"), [((20, 40), 1), ((20,), 0)])
+def test_of_a_run_without_set_points_several_speeds_are_said_once_to_be_unknown(
+    speeds: tuple[int, ...], lines: int, tmp_path: Path
+) -> None:
+    text = PROTOCOL + "".join(SPEED.format(speed) for speed in speeds)
+    recorder = new_run(tmp_path, title="Levels", protocol=text, facts={"groove_diameter": 0.05})
+    for part in range(2):
+        recorder.begin([FORCE], sample_rate=100.0)
+        values = 0.5 + 1e-3 * np.random.default_rng(part).standard_normal((400, 1))
+        recorder.append(Block(first_sample=0, sample_rate=100.0, values=values))
+        recorder.end()
+    folder = recorder.finish("completed").folder
+    rows, left_out = level_rows([folder])
+    unknown = f"{folder.name}: has no set points, so that load or speed of its rows is not known"
+    assert left_out == [unknown] * lines
+    assert [row[3] for row in rows[1:]] == (["0.02"] if lines == 0 else [""]) * 2

@@ -291,6 +291,35 @@ def test_friction_turned_round_and_a_disc_that_stands_are_recorded_as_they_would
         assert (found < high).all()
 
 
+def test_a_fault_that_begins_leaves_the_disc_at_the_speed_last_set_and_a_motor_that_is_off_at_rest(rig: Rig) -> None:
+    devices = rehearsed("devices.toml", rig, "friction_reversed@1s").devices
+    devices.motor.connect()
+    devices.motor.turn(0.2)
+    devices.motor.turn(0.5)
+    before = values(devices, "friction_force", samples=900)[400:, 0]
+    values(devices, "friction_force", samples=200)  # a fault acts from the next block on
+    after = values(devices, "friction_force", samples=500)[:, 0]
+    assert (before > 0.1).all()
+    assert after.mean() == approx(-before.mean(), rel=0.1)
+    still = rehearsed("devices.toml", rig, "friction_reversed@1s").devices
+    still.motor.connect()
+    still.motor.turn(0.5)
+    still.motor.off()
+    values(still, "friction_force", samples=1100)
+    assert values(still, "friction_force", samples=500)[300:, 0] == approx(0.0, abs=0.05)
+
+
+def test_a_motor_that_stalls_and_recovers_turns_again_at_the_speed_last_set(rig: Rig) -> None:
+    made = rehearsed("devices.toml", rig, "motor_stalls")
+    motor = made.devices.motor
+    motor.connect()
+    motor.turn(0.5)
+    assert values(made.devices, "friction_force", samples=500)[400:, 0] == approx(0.0, abs=0.05)
+    made.devices.motor._active._acting.clear()  # type: ignore[attr-defined]
+    motor.apply()  # type: ignore[attr-defined]
+    assert (values(made.devices, "friction_force", samples=500)[400:, 0] > 0.1).all()
+
+
 def test_limits_of_map_and_protocol_hold_as_on_hardware(rig: Rig) -> None:
     devices = rehearsed("devices.toml", rig).devices
     devices.drive.connect()

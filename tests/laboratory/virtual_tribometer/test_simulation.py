@@ -224,6 +224,20 @@ def test_the_deflection_is_that_of_friction_over_the_stiffness_less_the_play() -
     assert read(loose, 50)[-1] == approx(3e-8)  # it stays behind by the play on the other side
 
 
+def test_a_deflection_within_the_play_shows_nothing_and_a_loop_is_as_wide_as_twice_its_half() -> None:
+    # Friction of some 1 N bends the holder of 4 N/um by 0.25 um; the wobble bends it by 6 % of that to and fro.
+    held = virtual(replace(QUICK, deflected_stiffness=4e6, wobble_1=0.06, deflection_play=5e-6))
+    slide(held, "friction_force", "displacement")
+    force, shown = held.read(2000).values.T
+    assert np.ptp(force) > 0.05
+    assert shown == approx(0.0, abs=1e-15)
+    loose = virtual(replace(QUICK, deflected_stiffness=4e6, wobble_1=0.06, deflection_play=2e-9))
+    slide(loose, "friction_force", "displacement")
+    force, shown = loose.read(4000).values[2000:].T
+    behind = force / 4e6 - shown
+    assert (behind.max(), behind.min()) == (approx(2e-9), approx(-2e-9))
+
+
 def test_the_play_of_the_gauge_goes_on_from_block_to_block() -> None:
     rig = virtual(replace(QUICK, hysteresis=0.3))
     slide(rig, "friction_force")
