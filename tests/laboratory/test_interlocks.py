@@ -1,9 +1,11 @@
 """Interlocks hold every sample of a block to the limit and to both ends of its channel's range."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
+from pytest import raises
 
 from sonolube.errors import InvalidInput, SeveralFaults
 from sonolube.facts.protocol import Limits, flattened, protocol_from
@@ -95,6 +97,24 @@ def test_each_limit_holds_its_channels_and_that_of_the_current_an_rms_by_the_roo
         "pin_temperature": 350.0,
         "friction_force": 9.0,
     }
+
+
+def test_channels_of_other_names_are_held_by_what_they_measure() -> None:
+    known = channels_of(
+        Channel(name="amplifier_swing", quantity="voltage_peak_to_peak", lowest=-500.0, highest=500.0),
+        Channel(name="clamp", quantity="stack_current_rms", lowest=-5.0, highest=5.0),
+        Channel(name="second_cell", quantity="friction_force", lowest=-50.0, highest=50.0),
+        Channel(name="load", quantity="normal_load"),
+    )
+    limits = limits_of(current_maximum=0.5, friction_force_maximum=9.0)
+    held = {lock.channel.name: lock.limit for lock in interlocks_for(limits, known, SLOW)}
+    assert held == {
+        "amplifier_swing": 60.0,
+        "clamp": pytest.approx(0.353553, rel=1e-5),  # 0.5 / 1.41421
+        "second_cell": 9.0,
+    }
+    with raises(InvalidInput, match=r"current_rms tells no peak"):
+        interlocks_for(limits, known, replace(SLOW, is_sine=False))
 
 
 def test_a_limit_of_a_channel_itself_holds_beside_those_of_the_protocol() -> None:

@@ -1,8 +1,9 @@
 """Runner: protocols on a simulated rig, and every way in which a run can end."""
 
+import re
 import signal
 import threading
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -15,6 +16,7 @@ from sonolube.errors import InvalidInput, fault_line
 from sonolube.facts.protocol import Prompt, Protocol, protocol_from
 from sonolube.laboratory import Block, Channel, RunControl, RunState, State, run_protocol
 from sonolube.laboratory.block import quantity_of
+from sonolube.text.units import format_si
 
 MAP_TEST = {
     "title": "map test",
@@ -196,6 +198,63 @@ def test_a_lost_sample_is_no_silent_gap() -> None:
     result, _, _ = run(protocol(), SimulatedRig(skip_at=1000))
     assert result.outcome == "failed"
     assert "1 samples are missing after sample" in result.reason
+
+
+class WrongRig(SimulatedRig):
+    """A rig whose acquisition gives another rate than asked for, or one changed block after those in which it is watched at rest."""
+
+    def __init__(self, *, rate: float | None = None, change: Callable[[Block], Block] = lambda block: block) -> None:
+        super().__init__()
+        self._given, self._change, self._blocks = rate, change, 0
+
+    def start(self, channels: Sequence[str], *, sample_rate: float) -> float:
+        return super().start(channels, sample_rate=self._given or sample_rate)
+
+    def read(self, samples: int) -> Block:
+        block = super().read(samples)
+        self._blocks += 1
+        return self._change(block) if self._blocks == 45 else block
+
+
+@pytest.mark.parametrize("rate", [1.0, 40.0, 379.0, 421.0, 4000.0])
+def test_a_rate_that_is_more_than_five_per_cent_from_the_one_asked_for_ends_the_run(rate: float) -> None:
+    result, rig, record = run(protocol(), WrongRig(rate=rate))
+    assert result.outcome == "failed"
+    assert result.reason.startswith(f"simulated rig: samples at {format_si(rate, 'Hz')} where 400 Hz was asked for")
+    assert record.segments == []
+    assert not [call for call in rig.calls if call.startswith(("drive", "turn"))]
+
+
+@pytest.mark.parametrize("rate", [381.0, 419.0])
+def test_a_rate_within_five_per_cent_is_recorded_as_it_is(rate: float) -> None:
+    result, _, record = run(protocol(), WrongRig(rate=rate))
+    assert result.outcome == "completed"
+    assert record.segments[0][0].sample_rate == rate
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        (
+            lambda block: replace(block, values=np.hstack([block.values, block.values])),
+            r"gives values of shape \(20, 4\)",
+        ),
+        (lambda block: replace(block, values=block.values[:, 0]), r"gives values of shape \(20,\)"),
+        (lambda block: replace(block, sample_rate=800.0), "has changed its sample rate from 400 Hz to 800 Hz"),
+        (lambda block: replace(block, values=block.values + np.inf), "gives an infinite value"),
+        (lambda block: replace(block, first_sample=block.first_sample - block.samples), "-20 samples are missing"),
+        (
+            lambda block: replace(block, values=np.full(block.values.shape, -(2**15), np.int16)),
+            "channel voltage is -32.8 kV; its limit is 30 V",
+        ),
+    ],
+)
+def test_a_block_that_is_not_what_was_asked_for_ends_the_run(change: Callable[[Block], Block], reason: str) -> None:
+    result, rig, record = run(protocol(friction_force_maximum="20 N"), WrongRig(change=change))
+    assert result.outcome in ("failed", "stopped")
+    assert re.search(reason, result.reason), result.reason
+    assert 0 < sum(record.samples()) <= 5 * 20  # of 40 blocks nothing is recorded
+    assert rig.is_off
 
 
 def test_a_full_disk_ends_the_run_and_keeps_what_was_written() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from sonolube.errors import InvalidInput, SeveralFaults
 from sonolube.facts.protocol import Limits, Protocol, SetPoint, flattened
-from sonolube.laboratory.block import Block, Channel
+from sonolube.laboratory.block import CHANNEL_QUANTITIES, Block, Channel
 from sonolube.laboratory.devices import Devices, DriveSetting
 from sonolube.text.units import format_si
 
@@ -167,7 +167,8 @@ def interlocks_for(
     -------
     tuple of Interlock
         A limit of the current holds for `current` and `current_peak`; over the square root of two for `current_rms`.
-        That of the voltage, which is of a peak, holds for `voltage`, and twice it for `voltage_peak_to_peak`.
+        That of the voltage, which is of a peak, holds for `voltage`, and twice it for `voltage_peak_to_peak`. Channels
+        of other names with the same quantities are held too.
 
     Raises
     ------
@@ -181,7 +182,7 @@ def interlocks_for(
         limit, present = getattr(limits, name), _watching(channels, watched)
         if limit is None or (not present and name in _SET_POINTS):
             continue
-        locks = [Interlock(each, limit * _OF_LIMIT.get(each.name, 1.0)) for each in present]
+        locks = [Interlock(each, limit * _OF_LIMIT.get(_standard_name(each), 1.0)) for each in present]
         fault = _fault(name, watched[0], locks, drive)
         faults += [fault] if fault else []
         found += locks
@@ -196,10 +197,18 @@ def interlocks_for(
 
 
 def _watching(channels: Mapping[str, Channel], watched: Sequence[str]) -> list[Channel]:
-    """Channels that a limit holds: those of these names, and of temperatures all."""
+    """Channels that a limit holds: those of these names, then others of the same quantities."""
+    quantities = {CHANNEL_QUANTITIES[name] for name in watched}
     named = [channels[each] for each in watched if each in channels]
-    of_kind = [each for each in channels.values() if each.quantity in watched and each.quantity == "temperature"]
-    return [*named, *(each for each in of_kind if each not in named)]
+    return [*named, *(each for each in channels.values() if each.quantity in quantities and each not in named)]
+
+
+_NAMES: Final = {quantity: name for name, quantity in CHANNEL_QUANTITIES.items()}
+
+
+def _standard_name(channel: Channel) -> str:
+    """Name that every rig uses for the quantity of a channel."""
+    return _NAMES.get(channel.quantity, channel.name)
 
 
 def _is_beyond_range(lock: Interlock) -> bool:
@@ -221,7 +230,7 @@ def _fault(name: str, watched: str, locks: Sequence[Interlock], drive: DriveSamp
     for lock in locks:
         if _is_beyond_range(lock):
             return _beyond_range(f"limits.{name}", lock)
-    measured = {lock.channel.name: lock.channel for lock in locks}
+    measured = {_standard_name(lock.channel): lock.channel for lock in reversed(locks)}
     if name != "current_maximum" or drive is None or drive.of(measured.get("current")).is_resolved:
         return ""
     if "current_peak" in measured or ("current_rms" in measured and drive.is_sine):

@@ -1,11 +1,13 @@
 """Set points as channels: in every file of a run by quantity and unit, and what the catalogue makes of them."""
 
 import json
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from pytest import approx
 from tests.laboratory.simulated_rig import SimulatedRig
 
 from sonolube.errors import InvalidInput
@@ -196,6 +198,22 @@ def test_a_run_without_its_facts_is_mended(folder: Path) -> None:
     assert {name: mended[name] for name in ("title", "facts", "files", "recordings")} == {
         name: facts[name] for name in ("title", "facts", "files", "recordings")
     }
+
+
+@pytest.mark.parametrize("content", [b"", b"{", b"null", b"[]", b'{"title": 3}', b"\0\0\0", b"\xff\xfe", b"[" * 5000])
+def test_damaged_facts_are_mended_also_of_a_folder_that_was_renamed(
+    content: bytes, folder: Path, tmp_path: Path
+) -> None:
+    known = read_run(folder).summary
+    renamed = tmp_path / "specimen 7"
+    shutil.copytree(folder, renamed)
+    (renamed / "run.json").write_bytes(content)
+    with pytest.raises(InvalidInput, match=r"is damaged; `sonolube lab recover` writes it from the other files"):
+        read_run(renamed)
+    recover_run(renamed)
+    found = read_run(renamed).summary
+    assert (found.title, found.outcome) == (known.title, known.outcome)
+    assert found.begun == approx(known.begun, abs=1e-3)
 
 
 def test_a_run_that_was_killed_before_its_facts_were_written_is_mended(folder: Path) -> None:

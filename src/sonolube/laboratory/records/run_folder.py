@@ -187,11 +187,12 @@ def rebuilt_run_facts(folder: Path, start: Mapping[str, Any] | None) -> RunFacts
     With the SHA-256 of the files as they are now where no document tells them.
     """
     stamp = _STAMPED.match(folder.resolve().name)
-    if stamp is None or not is_run_folder(folder.resolve()):
-        raise InvalidInput(f"{folder}: holds no run: it has no file {RUN}")
     told = start or {}
-    begun = datetime.strptime(f"{stamp[1]}+0000", "%Y%m%dT%H%M%SZ%z").timestamp()
+    if (stamp is None and "time" not in told) or not is_run_folder(folder.resolve()):
+        state = "is damaged, and neither a document nor the folder's name tells when it began"
+        raise InvalidInput(f"{folder}: holds no run: its {RUN} is missing or {state}")
     try:
+        begun = 0.0 if stamp is None else datetime.strptime(f"{stamp[1]}+0000", "%Y%m%dT%H%M%SZ%z").timestamp()
         texts = (line.rsplit(" sha256:", 1) for line in told.get("files", ()))
         files = {str(name): str(digest) for name, digest in texts}
         facts = {printable(str(name)): _fact(value) for name, value in dict(told.get("facts", {})).items()}
