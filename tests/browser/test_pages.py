@@ -143,6 +143,28 @@ def test_the_body_that_vibrates_is_that_of_the_rig(page: Page, workbench: Served
     expect(page.get_by_test_id("moves:disc")).to_be_visible()
 
 
+def test_an_example_is_taken_from_the_gallery_by_keys_and_on_a_phone(browser: Browser, workbench: Served) -> None:
+    with opened(browser, workbench, bypass_csp=True, reduced_motion="reduce") as page:
+        reach(page, "examples")
+        page.keyboard.press("Enter")
+        expect(page.get_by_test_id("example:tribometer")).to_have_attribute("aria-current", "true")
+        assert faults_of_access(page) == []
+        reach(page, "example:coated_plate")
+        page.keyboard.press("Enter")
+        expect(page.get_by_test_id("gallery")).to_be_hidden()
+        expect(page.get_by_test_id("rig")).to_have_value("coated_plate")
+        at_rest(page)
+        page.set_viewport_size({"width": 390, "height": 844})
+        page.get_by_test_id("examples").click()
+        picture = page.get_by_test_id("example:collar").locator("img")
+        picture.scroll_into_view_if_needed()
+        page.wait_for_function("(each) => each.complete && each.naturalWidth > 0", arg=picture.element_handle())
+        assert page.evaluate("document.querySelector('dialog').scrollWidth <= innerWidth")
+        assert faults_of_access(page) == []
+        page.keyboard.press("Escape")
+        expect(page.get_by_test_id("gallery")).to_be_hidden()
+
+
 TYPED = ("", "3 kg", "5 V", "1e999 N", "-1 N", "NaN", "\u202e3 N", "<img onerror=alert(1)>", "9" * 10_000)
 
 

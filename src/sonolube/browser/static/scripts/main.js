@@ -86,9 +86,30 @@ function Head() {
     <div class="tools">
       <${Step} name="Undo" keys="Ctrl+Z" step=${undo} can=${canUndo} />
       <${Step} name="Redo" keys="Ctrl+Shift+Z" step=${redo} can=${canRedo} kind="mirrored" />
+      <${Examples} />
       <${TakeAway} />
     </div>
   </header>`;
+}
+
+/** Button that opens the gallery of examples, whose module is read when it is first pressed. */
+function Examples() {
+  const [Gallery, setGallery] = useState(null);
+  const [isOpen, setOpen] = useState(false);
+  const open = async () => {
+    const {default: shown} = await import('./gallery.js');
+    setGallery(() => shown);
+    setOpen(true);
+  };
+  return html`
+    <${Button} onClick=${open} aria-haspopup="dialog" aria-label="Examples" title="Examples" data-test="examples">
+      <svg viewBox="0 0 16 16" width="16" height="16" class="examples-sign" aria-hidden="true">
+        <path d="M1 1h6v6H1z M9 1h6v6H9z M1 9h6v6H1z M9 9h6v6H9z" fill="none" stroke="currentColor" />
+      </svg>
+      <span class="examples-word">Examples</span>
+    <//>
+    ${Gallery && isOpen && html`<${Gallery} onClose=${() => setOpen(false)} />`}
+  `;
 }
 
 /**

@@ -7,7 +7,7 @@ import {useReply} from './api.js';
 import {ContactForm} from './contact-form.js';
 import {Field, spreadKey} from './fields.js';
 import {Button, FileButton, Loading, Refusal, Select, useDrop} from './parts.js';
-import {addressOf, change, isOfTab, pack, setEntry, settle, useApp} from './state.js';
+import {addressOf, change, isOfTab, pack, pageNow, setEntry, settle, useApp} from './state.js';
 
 /**
  * @import {RigField} from './fields.js'
@@ -48,6 +48,20 @@ const textOf = (rig, field) => rig.changes[field.key] ?? field.text;
 /** @param {RigField} field */
 const tableOf = (field) => field.key.slice(0, field.key.lastIndexOf('.'));
 
+/** Pages that have the rig beside their answer. */
+const BESIDE_RIG = ['predict', 'explore', 'design'];
+
+/**
+ * Make an example, or the rig that was opened, that of the state, without what belonged to the rig before.
+ * @param {string} name
+ */
+export const chooseRig = (name) =>
+  change({
+    page: BESIDE_RIG.includes(pageNow()) ? undefined : 'predict',
+    rig: {name, changes: {}},
+    view: {pin: null, disc: null, runs: null, lost: null},
+  });
+
 /**
  * Chooser of a rig: the examples, the one that was opened, an own file.
  * @param {{view: RigView|null}} props
@@ -60,8 +74,7 @@ export function RigChoice({view}) {
   ].filter(Boolean);
   const choices = names.map((name) => (own && name === state.rig.name ? ['', `${name} (own file)`] : [name, name]));
   /** @param {FieldEvent} event */
-  const choose = (event) =>
-    change({rig: {name: event.target.value, changes: {}}, view: {pin: null, disc: null, runs: null, lost: null}});
+  const choose = (event) => chooseRig(event.target.value);
   return html`<div class="rig-choice">
     <div class="row">
       <label for="rig-name" class="grow">Rig</label>

@@ -284,6 +284,9 @@ export function useApp() {
   return {state, isMoving, canUndo: past.length > 0, canRedo: future.length > 0};
 }
 
+/** Page as it is now. @returns {string} */
+export const pageNow = () => state.page;
+
 /** Name of the rig as it is now. @returns {string} */
 export const rigNow = () => state.rig.name;
 
