@@ -165,6 +165,29 @@ def test_an_example_is_taken_from_the_gallery_by_keys_and_on_a_phone(browser: Br
         expect(page.get_by_test_id("gallery")).to_be_hidden()
 
 
+UNPREDICTED = {"cutter_head": "kinematic", "finger_on_glass": "squeeze film", "pom_on_steel": "soft layer"}
+
+
+@pytest.mark.parametrize("name", UNPREDICTED)
+def test_a_rig_without_a_prediction_shows_its_model_and_the_reason_and_no_number_of_another(
+    shown: Page, workbench: Served, name: str
+) -> None:
+    show(shown, workbench, "tribometer", {})
+    shown.set_viewport_size({"width": 390, "height": 844})
+    shown.get_by_test_id("examples").click()
+    shown.get_by_test_id(f"example:{name}").press("Enter")
+    ratio = float(sl.friction(read_rig(RIGS / f"{name}.toml"))["friction_ratio"])
+    expect(shown.get_by_test_id("statement")).to_have_text(
+        f"By its model alone ({UNPREDICTED[name]}), friction falls by {100 * (1 - ratio):.0f} %."
+    )
+    expect(shown.get_by_test_id("reason")).to_contain_text(
+        "all published tests behind a prediction are of hard bodies."
+    )
+    expect(shown.get_by_test_id("numbers")).to_have_count(0)
+    expect(shown.get_by_test_id("changes")).to_have_count(0)
+    shown.set_viewport_size({"width": 1280, "height": 800})
+
+
 TYPED = ("", "3 kg", "5 V", "1e999 N", "-1 N", "NaN", "\u202e3 N", "<img onerror=alert(1)>", "9" * 10_000)
 
 

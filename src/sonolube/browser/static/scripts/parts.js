@@ -56,9 +56,10 @@ export const Section = ({
 
 /**
  * Section as a card; dimmed while it is of another state.
- * @param {{isDim?: boolean, [name: string]: any}} properties
+ * @param {{isDim?: boolean, kind?: string, [name: string]: any}} properties
  */
-export const Card = ({isDim, ...rest}) => html`<${Section} kind=${classes('card', {'is-dim': isDim})} ...${rest} />`;
+export const Card = ({isDim, kind = 'card', ...rest}) =>
+  html`<${Section} kind=${classes(kind, {'is-dim': isDim})} ...${rest} />`;
 
 /** @param {{children: any}} props */
 export const Loading = ({children}) => html`<p class="loading" role="status">${children}</p>`;

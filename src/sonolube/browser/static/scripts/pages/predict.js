@@ -5,7 +5,7 @@ import {ask, callTask, inTurn, useLate, useReply} from '../api.js';
 import {Bar, ChangeBars} from '../change-bars.js';
 import {Chart} from '../chart.js';
 import {focusField, MaterialChoices, RunsChoice, typed, uploadOf} from '../fields.js';
-import {Button, Card, classes, Refusal} from '../parts.js';
+import {Button, Card, classes, Refusal, words} from '../parts.js';
 import {useRig, Workspace} from '../rig-panel.js';
 import {RunsTable, useRunsFile} from '../runs-table.js';
 import {addressOf, change, decode, encode, present, setEntry, useApp} from '../state.js';
@@ -329,6 +329,38 @@ function dragOf(view, chart) {
   });
 }
 
+/**
+ * What is said of a rig that cannot be predicted: the friction by its own model, and why there is no interval.
+ * @param {{answer: Content, reason: string}} props
+ */
+function ByModel({answer, reason}) {
+  const rows = answer.blocks.flatMap((block) => block.rows ?? []).filter(([, text]) => !words(text).includes(reason));
+  return html`<div class="first-screen" data-test="by-model">
+    <${Card} id="model-title" kind="card is-figure" title="What its model says">
+      <${TextTable} rows=${rows} label="Friction by the model of the rig" />
+      <p class="hint">
+        One value, without an interval.${' '}
+        <a href=${addressOf('explore')} data-test="explore-model">See it over amplitude, speed and load</a>
+      </p>
+    <//>
+    <section class="card" aria-label="Caveats and assumptions">
+      <${Caveats} answer=${answer} isMoving=${false} of="" />
+    </section>
+  </div>`;
+}
+
+/**
+ * Why a rig has no prediction, without its title and without what the terminal offers instead.
+ * @param {string} text
+ */
+const reasonOf = (text) => words(text.slice(text.indexOf(': ') + 2).split('; use sonolube ')[0]);
+
+/**
+ * Whether a refusal is of no single entry, as that of a rig that cannot be predicted is.
+ * @param {import('../api.js').Failure|null} failure
+ */
+const isOfRig = (failure) => failure?.kind === 'refused' && failure.faults.every(({key}) => !key);
+
 export default function Predict() {
   const {state, isMoving} = useApp();
   const {view} = useRig();
@@ -336,9 +368,19 @@ export default function Predict() {
   const {pin, disc, runs} = state.view;
   const body = argumentsOf(state, isMoving);
   const reply = useReply('predict', state.rig.name ? `api/tasks/predict${isMoving ? '?tables=no' : ''}` : null, body);
-  const {content, failure, refused, isWaiting} = reply;
+  const {failure, refused, isWaiting} = reply;
+  const isOther = reply.of && (reply.of.rig.name !== state.rig.name || reply.of.rig.text !== state.rig.text);
+  const isUnpredicted = isOfRig(failure) && !isWaiting;
+  const model = useReply('friction', isUnpredicted ? 'api/tasks/friction' : null, {rig: state.rig});
+  /** @type {string} */
+  const why = isUnpredicted && !model.isWaiting ? (model.content?.answer.predicted_friction_ratio?.reason ?? '') : '';
+  const byModel = why ? model.content : null;
+  const content = isOther || byModel ? null : reply.content;
   const {kept, keep, remove} = useKept(state, content);
-  useEffect(() => offer('predict', argumentsOf(state, false)), [JSON.stringify(body)]);
+  useEffect(
+    () => (byModel ? offer('friction', {rig: state.rig}) : offer('predict', argumentsOf(state, false))),
+    [JSON.stringify(body), Boolean(byModel)],
+  );
   /** @param {string} key */
   const faultOf = (key) => failure?.faults.find((fault) => fault.key === key)?.text;
   const shown = [...Object.keys(state.rig.changes), 'pin', 'disc', 'lubricant'];
@@ -350,18 +392,33 @@ export default function Predict() {
     disagreeing=${content?.answer.disagreeing_runs}
   />`;
   const isDim = useLate(isWaiting || Boolean(failure));
+  if (byModel) {
+    const {rig, friction_model: name, friction_reduction: reduction} = byModel.answer;
+    const share = `${Math.abs(Math.round(100 * reduction.value))} %`;
+    const lead = html`
+      <p class="overline">${rig}</p>
+      <h1 class="statement" data-test="statement">
+        ${`By its model alone (${words(name)}), friction ${reduction.value < 0 ? 'rises' : 'falls'} by ${share}.`}
+      </h1>
+      <p class="lead-likely" data-test="reason">Not predicted: ${reasonOf(why)}.</p>
+    `;
+    return html`<${Workspace} lead=${lead} extra=${extra} onFile=${onFile}>
+      <${ByModel} answer=${byModel} reason=${reasonOf(why)} />
+    <//>`;
+  }
   if (!content) {
+    const isPending = isWaiting || (isUnpredicted && model.isWaiting);
     return html`<${Workspace}
       extra=${extra}
       lead=${html`
         <p class="overline">Predict</p>
         <h1 class="statement is-pending">
-          ${failure ? 'No answer yet' : 'Computing the first answer…'}
+          ${failure && !isPending ? 'No answer yet' : 'Computing the first answer…'}
         </h1>
-        <${Failure} failure=${failure} shown=${shown} />
+        <${Failure} failure=${isPending ? null : failure} shown=${shown} />
       `}
     >
-      ${failure ? state.view.runs && ownRuns : html`<div class="skeleton" aria-hidden="true"></div>`}
+      ${failure && !isPending ? state.view.runs && ownRuns : html`<div class="skeleton" aria-hidden="true"></div>`}
     <//>`;
   }
   const [outcome, ...others] = content.answer.statement;
