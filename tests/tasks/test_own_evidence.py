@@ -116,8 +116,8 @@ def test_a_virtual_tribometer_draws_its_friction_from_the_posterior(file: Path, 
     protocol = tmp_path / "vibrated.toml"
     protocol.write_text(_VIBRATED)
     answers = [sl.lab.run(protocol, rig=MAPPED, seed=2, out=tmp_path, evidence=each) for each in (None, file)]
-    runs = [each.run for each in answers if isinstance(each, RunAnswer)]
-    before, after = (each.dataset()["friction_force"].values[-100:].mean() for each in runs)
+    without, within = (each.run for each in answers if isinstance(each, RunAnswer))
+    before, after = (each.dataset()["friction_force"].values[-100:].mean() for each in (without, within))
     assert after > 1.1 * before  # over twice the length vibration does less
     assert "3 points of Own (own.json)" in str(within.facts["evidence"])
     assert "evidence" not in without.facts

@@ -52,6 +52,7 @@ def test_the_greatest_reduction_has_the_interval_that_predict_has_there(rig: sl.
     told = answer.json_object()
     at = told["most_reduction"]
     changes = [f"sliding.sliding_speed={at['sliding_speed']['value']} m/s", f"{VOLTAGE}={at[VOLTAGE[6:]]['value']} V"]
+    assert rig.file is not None
     there = sl.read_rig(rig.file, changes=changes)
     expected = np.quantile(sl.predict(there)["friction_ratio"], [0.1, 0.5, 0.9])
     (low, high), median = (told["predicted_friction_ratio"][name] for name in ("interval_80", "median"))
