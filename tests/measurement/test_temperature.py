@@ -57,6 +57,14 @@ def test_a_time_constant_longer_than_the_record_raises_a_caveat() -> None:
     assert "longer than the record" in found.caveats[0]
 
 
+@mark.parametrize("scale", [0.0, 1e-3])
+def test_two_equal_time_constants_whose_shares_cancel_are_refused(scale: float) -> None:
+    # t exp(-t / 10 s) is the limit of two exponentials that approach 10 s, with shares beyond all bounds.
+    rise_and_fall = 294.0 + TIME * np.exp(-TIME / 10.0) + noise(4, scale)
+    with raises(InvalidInput, match=r"exponentials of (9\.|10\.?).* s and (9|10)\.?.* s cancel each other, .* choose"):
+        fit_temperature_response(time=TIME, temperature=rise_and_fall, exponentials=2)
+
+
 def test_rises_over_a_reference_test_are_found_stage_by_stage() -> None:
     without_time = np.linspace(0, 50, 333)
     without = 20 + 0.5 * without_time

@@ -233,18 +233,18 @@ def _response(t: Floats, value: Floats, logarithms: Floats, confidence_level: fl
     inefficiency = statistical_inefficiency(residuals) if np.ptp(residuals) > 0 else 1.0
     variance = float(np.sum(residuals**2)) / max(1, t.size - jacobian.shape[1])
     norms = np.linalg.norm(jacobian, axis=0)
-    inverse = np.linalg.pinv(jacobian / norms)
-    covariance = inefficiency * variance * (inverse @ inverse.T) / np.multiply.outer(norms, norms)
+    # Rows of it: the covariance of the parameters is this matrix times its transpose, never negative by rounding.
+    spread = np.sqrt(inefficiency * variance) * np.linalg.pinv(jacobian / norms) / norms[:, np.newaxis]
     quantile = float(stats.t.ppf((1 + confidence_level) / 2, max(1.0, t.size / inefficiency - jacobian.shape[1])))
 
     def interval(direction: Floats) -> ConfidenceInterval:
         """Interval of a linear combination of the amplitudes."""
         estimate = float(direction @ amplitudes)
-        half = quantile * float(np.sqrt(direction @ covariance[: count + 1, : count + 1] @ direction))
+        half = quantile * float(np.linalg.norm(direction @ spread[: count + 1]))
         return ConfidenceInterval(value=estimate, lower=estimate - half, upper=estimate + half)
 
     unit_vectors = np.eye(count + 1)
-    factors = np.exp(np.minimum(quantile * np.sqrt(np.diag(covariance)[count + 1 :]), 300.0))
+    factors = np.exp(np.minimum(quantile * np.linalg.norm(spread[count + 1 :], axis=1), 300.0))
     taus = np.exp(logarithms)
     return TemperatureResponse(
         final_temperature=interval(unit_vectors[0]),
