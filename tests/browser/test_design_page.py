@@ -61,6 +61,8 @@ def test_a_controller_in_c_and_as_units(hand: type[Mouse], page: Page, tmp_path:
     content = terminal("control", str(RIGS / "tribometer.toml"), "--friction", "0.5N", "--delay", "2ms")
     shown = page.get_by_test_id("numbers").locator("dd").all_text_contents()
     assert shown == [each["text"] for each in content["summary"]]
+    told = {each["key"]: each["text"] for each in content["summary"]}
+    expect(page.get_by_text(f"Gain margin {told['gain_margin']}, phase margin {told['phase_margin']}")).to_be_visible()
     for ending in (".c", ".csv"):
         written = (tmp_path / f"tribometer-control{ending}").read_text(encoding="utf-8")
         same_text(plain(downloaded(walk, f"save:{ending}")), written)

@@ -75,7 +75,11 @@ def control_object(
         "limit": study.limit,
         **si(values),
         "summary": [
-            {"label": quantity(name).meaning, "text": "never" if values[name] is None else _text(name, values[name])}
+            {
+                "key": name,
+                "label": quantity(name).meaning,
+                "text": "never" if values[name] is None else _text(name, values[name]),
+            }
             for name in _SUMMARY
         ],
     }
@@ -179,16 +183,20 @@ def posterior_facts(study: ControlDesign, found: PosteriorLoop | str, *, tuned_f
 
 
 def posterior_summary(study: ControlDesign, found: PosteriorLoop | str) -> list[dict[str, str]]:
-    """Label and text of the predicted reach, the chance of the target and the worst gain margin; empty without them."""
+    """Key, label and text of the predicted reach, the chance of the target and the worst gain margin; empty without them."""
     if isinstance(found, str):
         return []
     rows = [
-        {"label": "Least friction within reach, predicted", "text": _reach_text(study, found)},
-        {"label": "Target within reach", "text": odds_text(found.target_chance)},
+        {
+            "key": "predicted_least_friction",
+            "label": "Least friction within reach, predicted",
+            "text": _reach_text(study, found),
+        },
+        {"key": "target_chance", "label": "Target within reach", "text": odds_text(found.target_chance)},
     ]
     if found.margins:
         text = f"{found.margins[-1].gain_margin:.3g}"
-        rows.append({"label": "Gain margin at the worst of 80 %", "text": text})
+        rows.append({"key": "worst_gain_margin", "label": "Gain margin at the worst of 80 %", "text": text})
     return rows
 
 

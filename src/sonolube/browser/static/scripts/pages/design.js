@@ -408,8 +408,9 @@ function Control({state: {view, rig}, schema, rigView}) {
   const args = {rig, ...given('control', names, schema, view)};
   const reply = useAnswer('control', args, names);
   const {content, isDim, faultOf} = reply;
-  /** @type {{label: string, text: string}[]} */
+  /** @type {{key: string, label: string, text: string}[]} */
   const summary = content?.answer.summary ?? [];
+  const margins = ['gain_margin', 'phase_margin'].map((name) => summary.find(({key}) => key === name)?.text);
   return html`
     <${Form}
       label="Loop"
@@ -425,11 +426,11 @@ function Control({state: {view, rig}, schema, rigView}) {
     ${
       content &&
       html`<div class="parts" aria-busy=${reply.isWaiting} data-test="control">
-        <${Statement} isDim=${isDim} text=${`Gain margin ${summary[0].text}, phase margin ${summary[1].text}`} />
+        <${Statement} isDim=${isDim} text=${`Gain margin ${margins[0]}, phase margin ${margins[1]}`} />
         <dl class="numbers" data-test="numbers">
           ${summary.map(
-            ({label, text}) =>
-              html`<div key=${label} class="number"><dt>${label}</dt><dd class="median">${text}</dd></div>`,
+            ({key, label, text}) =>
+              html`<div key=${key} class="number"><dt>${label}</dt><dd class="median">${text}</dd></div>`,
           )}
         </dl>
         <${Saves}
