@@ -183,7 +183,7 @@ def posterior_facts(study: ControlDesign, found: PosteriorLoop | str, *, tuned_f
 
 
 def posterior_summary(study: ControlDesign, found: PosteriorLoop | str) -> list[dict[str, str]]:
-    """Key, label and text of the predicted reach, the chance of the target and the worst gain margin; empty without them."""
+    """Key, label and text of the predicted reach, chance of the target and worst gain margin; empty without them."""
     if isinstance(found, str):
         return []
     rows = [
