@@ -36,3 +36,19 @@ def test_the_error_falls_with_the_fourth_power_of_the_step(count: int, error: fl
 def test_values_by_parts_keep_the_order_and_shape_of_arrays_that_broadcast() -> None:
     one, other = np.arange(300.0)[:, None], np.arange(70.0)
     same(in_chunks(lambda a, b: 100 * a + b, one, other), 100 * one + other)
+
+
+@pytest.mark.parametrize("shape", [(4,), (5,), (6, 4), (97, 33)])
+def test_the_coefficients_hold_the_values_and_the_end_conditions(shape: tuple[int, ...]) -> None:
+    values = np.random.default_rng(5).normal(size=shape)
+    found = spline_coefficients(values)
+    for axis in range(len(shape)):  # their own axis at a time, in the dense system
+        count = shape[axis]
+        system = np.zeros((count + 2, count + 2))
+        for node in range(count):
+            system[node + 1, node : node + 3] = 1 / 6, 2 / 3, 1 / 6
+        system[0, :5] = system[-1, -5:] = 1, -4, 6, -4, 1
+        padded = np.zeros((count + 2, *np.delete(values.shape, axis)))
+        padded[1:-1] = np.moveaxis(values, axis, 0)
+        values = np.moveaxis(np.tensordot(np.linalg.inv(system), padded, axes=1), 0, axis)
+    assert found == approx(values, rel=1e-9, abs=1e-11)

@@ -23,15 +23,31 @@ def spline_coefficients(values: Floats) -> Floats:
     """
     coefficients = np.asarray(values, dtype=np.float64)
     for _ in range(coefficients.ndim):  # along the first axis, which then becomes the last
-        count = len(coefficients)
-        nodes = np.arange(count)
-        system, known = np.zeros((count + 2, count + 2)), np.zeros((count + 2, *coefficients.shape[1:]))
-        for shift, weight in enumerate((1 / 6, 2 / 3, 1 / 6)):
-            system[nodes + 1, nodes + shift] = weight
-        system[0, :5] = system[-1, -5:] = 1, -4, 6, -4, 1
-        known[1:-1] = coefficients
-        coefficients = np.ascontiguousarray(np.linalg.solve(system, known).T)
+        coefficients = np.ascontiguousarray(_along_first_axis(coefficients).T)
     return coefficients
+
+
+def _along_first_axis(values: Floats) -> Floats:
+    """Coefficients c of (c_j + 4 c_j+1 + c_j+2)/6 = f_j along the first axis, in a time that grows with its length.
+
+    As the fourth difference of c vanishes at either end, the second difference of c there is that of f, which gives
+    the third coefficient from either end; between these the system is tridiagonal.
+    """
+    f, count = values, len(values)
+    c = np.empty((count + 2, *f.shape[1:]))
+    c[2] = f[1] - (f[0] - 2 * f[1] + f[2]) / 6
+    c[-3] = f[-2] - (f[-3] - 2 * f[-2] + f[-1]) / 6
+    pivots = [pivot := 0.0]
+    for j in range(3, count - 1):
+        pivot = 1 / (4 - pivot)
+        pivots.append(pivot)
+        c[j] = (6 * f[j - 1] - c[j - 1]) * pivot
+    for j in range(count - 2, 2, -1):
+        c[j] -= pivots[j - 2] * c[j + 1]
+    for near in (1, 0):
+        c[near] = 6 * f[near] - 4 * c[near + 1] - c[near + 2]
+        c[-1 - near] = 6 * f[-1 - near] - 4 * c[-2 - near] - c[-3 - near]
+    return c
 
 
 def spline_values(coefficients: Floats, *places: Floats) -> Floats:
