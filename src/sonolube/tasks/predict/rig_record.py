@@ -386,6 +386,7 @@ def thermal(
     '7.3 mW'
     """
     known = rig_of(rig)
+    _ = resolved_rig(known).separation  # which refuses a load that leaves none
     if (crushed := crushing_load(known)) is not None:
         raise InvalidInput(f"{known.title}: {crushed}")
     hardness = softer_hardness(known, pin, disc)
