@@ -201,7 +201,7 @@ def test_a_lost_sample_is_no_silent_gap() -> None:
 
 
 class WrongRig(SimulatedRig):
-    """A rig whose acquisition gives another rate than asked for, or a changed block once it has been seen at rest."""
+    """A rig that samples at another rate than asked for, or changes one block after those of the prompt."""
 
     def __init__(self, *, rate: float | None = None, change: Callable[[Block], Block] = lambda block: block) -> None:
         super().__init__()

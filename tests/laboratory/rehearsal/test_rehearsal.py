@@ -18,7 +18,8 @@ from sonolube.laboratory.drivers.daqmx_acquisition import DaqmxAcquisition
 from sonolube.laboratory.drivers.visa_connection import VisaConnection
 from sonolube.laboratory.records import new_run, read_run
 from sonolube.laboratory.rehearsal import FAULTS, Rehearsal, faults_named, rehearsal
-from sonolube.laboratory.virtual_tribometer import UNDISTURBED
+from sonolube.laboratory.virtual_tribometer import UNDISTURBED, pace
+from sonolube.laboratory.virtual_tribometer.streams import Stream
 from sonolube.rig import Rig, read_rig
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
@@ -289,6 +290,42 @@ def test_friction_turned_round_and_a_disc_that_stands_are_recorded_as_they_would
         found = values(devices, "friction_force", samples=500)[400:, 0]
         assert (found > low).all()
         assert (found < high).all()
+
+
+ASKING = """title = "t"
+source = "s"
+[limits]
+voltage_maximum = "60 V"
+duration_maximum = "60 s"
+[[steps]]
+kind = "prompt"
+task = "other"
+text = "Look."
+[[steps]]
+kind = "acquire"
+channels = ["friction_force", "voltage"]
+sample_rate = "1 kHz"
+duration = "5 s"
+[[steps]]
+kind = "wait"
+duration = "5 s"
+"""
+
+
+def test_the_expected_time_counts_all_clocks_also_while_somebody_is_asked(rig: Rig, monkeypatch: MonkeyPatch) -> None:
+    # A microsecond for each moment of each clock: 50 a block at 1 kHz, 25,000 at the 500 kHz of the fast clock, and
+    # half a millisecond for handling. 100 blocks, and 1200 of the fast clock alone in the minute of the prompt.
+    now, next_times = [0.0], Stream.next_times
+
+    def counted(stream: Stream, samples: int) -> np.ndarray:
+        now[0] += 1e-6 * samples
+        return next_times(stream, samples)
+
+    monkeypatch.setattr(Stream, "next_times", counted)
+    monkeypatch.setattr(pace, "monotonic", lambda: now[0])
+    found = rehearsed("several_clocks.toml", rig).expected_time(protocol_from(tomllib.loads(ASKING)))
+    assert found.wall_time == approx(100 * (0.5e-3 + 50e-6 + 25e-3) + 1200 * 25e-3, rel=0.01)
+    assert found.samples == 5_000 + 2_500_000
 
 
 def test_a_fault_that_begins_leaves_the_disc_at_the_speed_last_set_and_a_motor_that_is_off_at_rest(rig: Rig) -> None:

@@ -244,6 +244,15 @@ duration = "1 s"
 """
 
 
+RECORDED = """[[steps]]
+kind = "acquire"
+channels = ["friction_force", "voltage"]
+sample_rate = "1 kHz"
+duration = "1 s"
+
+"""
+
+
 def test_a_dry_run_on_a_device_map_says_what_its_devices_cannot_do_and_do_not_tell(tmp_path: Path) -> None:
     (tmp_path / "driven.toml").write_text(DRIVEN)
     known, blind = LAB / "tektronix_afg.toml", tmp_path / "blind.toml"
@@ -255,6 +264,11 @@ def test_a_dry_run_on_a_device_map_says_what_its_devices_cannot_do_and_do_not_te
     assert "157 mm/s" in " ".join(told.object()["lines"])  # a turn a second of 50 mm, by the map
     unseen = lab.run(tmp_path / "driven.toml", blind, dry_run=True)
     assert unseen.assumptions()["self-test"].startswith("none: no channel of the map shows the voltage")
+    (tmp_path / "seen.toml").write_text(DRIVEN.replace("[[steps]]", f"{RECORDED}[[steps]]", 1))
+    caveat = "voltage at 1 kHz does not resolve the drive (fewer than five samples a period)"
+    assert caveat in lab.run(tmp_path / "seen.toml", known, dry_run=True).caveats()
+    fast = lab.run(tmp_path / "seen.toml", LAB / "several_clocks.toml", dry_run=True)  # of a clock of 500 kHz
+    assert not any("resolve the drive" in each for each in fast.caveats())
     (tmp_path / "driven.toml").write_text(DRIVEN.replace('"40 V"', '"164 V"'))
     beyond = lab.run(tmp_path / "driven.toml", known, dry_run=True)
     assert any("82 V" in each and "at most 80 V" in each for each in beyond.object()["refusals"])

@@ -149,7 +149,7 @@ class Rehearsal:
         self._virtual, self._diameter = virtual, groove_diameter
 
     def expected_time(self, protocol: Protocol) -> ExpectedTime:
-        """Time that a protocol is expected to take, by a few blocks and set points of the first acquisition.
+        """Time that a protocol is expected to take, by a few blocks of all acquisitions and a few set points.
 
         Parameters
         ----------
@@ -160,7 +160,9 @@ class Rehearsal:
         ExpectedTime
         """
         channels = tuple(self.devices.acquisition.channels)
-        return expected_time(self._virtual, protocol, channels=channels, groove_diameter=self._diameter)
+        known = [each for each in self.devices.further.values() if isinstance(each, _Beside)]
+        beside = [(each.stream, next(iter(each.channels.values())).sample_rate or 0.0) for each in known]
+        return expected_time(self._virtual, protocol, channels=channels, groove_diameter=self._diameter, beside=beside)
 
     def truth(self) -> "xr.Dataset":
         """Truth of the recording, as that of a virtual tribometer, with deviations of calibrations and faults.

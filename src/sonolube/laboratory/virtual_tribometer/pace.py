@@ -1,5 +1,6 @@
 """Time that a protocol will take on a virtual rig, by a few blocks and set points that are computed to see."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import pi
@@ -7,10 +8,12 @@ from statistics import median
 from time import monotonic
 from typing import Final
 
-from sonolube.facts.protocol import Protocol, SetPoint, flattened
+from sonolube.checks import Floats
+from sonolube.facts.protocol import PROMPT_DURATIONS, Prompt, Protocol, SetPoint, flattened, step_at
 from sonolube.laboratory.block import BLOCK_DURATION
 from sonolube.laboratory.devices import DriveSetting
 from sonolube.laboratory.virtual_tribometer.simulation import VirtualRig
+from sonolube.laboratory.virtual_tribometer.streams import Stream
 from sonolube.text.units import format_si
 
 WORTH_SAYING: Final = 1.0
@@ -64,7 +67,12 @@ class ExpectedTime:
 
 
 def expected_time(
-    virtual: VirtualRig, protocol: Protocol, *, channels: tuple[str, ...], groove_diameter: float
+    virtual: VirtualRig,
+    protocol: Protocol,
+    *,
+    channels: tuple[str, ...],
+    groove_diameter: float,
+    beside: Sequence[tuple[Stream, float]] = (),
 ) -> ExpectedTime:
     """Time that a protocol is expected to take on a virtual rig, whose samples stay as they are.
 
@@ -77,6 +85,9 @@ def expected_time(
         Of the acquisition with the clock of protocols.
     groove_diameter : float
         Of the circle under the pin. [m]
+    beside : sequence of (Stream, float)
+        Acquisitions with clocks of their own, which sample all the time, also while somebody is asked, each with its
+        sample rate. [Hz]
 
     Returns
     -------
@@ -84,7 +95,10 @@ def expected_time(
     """
     points = flattened(protocol)
     recorded = [point for point in points if point.begins_recording]
-    samples = sum(round(_lasts(each) * (each.sample_rate or 0.0)) * len(each.channels) for each in recorded)
+    own = {name: rate for stream, rate in beside for name in stream.sources}
+    samples = sum(
+        round(_lasts(each) * own.get(name, each.sample_rate or 0.0)) for each in recorded for name in each.channels
+    )
     duration = points[-1].time
     wall, spent = _prepared(virtual, points, groove_diameter)
     by_block: dict[tuple[tuple[str, ...], float], float] = {}
@@ -92,8 +106,13 @@ def expected_time(
         names = tuple(name for name in point.channels if name in channels) or channels[:1]
         key = names, point.sample_rate or _IDLE
         if key not in by_block:
-            by_block[key] = _per_block(virtual, *key)
+            by_block[key] = _per_block(virtual, *key, beside=beside)
         wall += (following.time - point.time) / BLOCK_DURATION * by_block[key]
+    asked = [step_at(protocol, point.step) for point in points if point.kind == "prompt"]
+    if beside and asked:
+        prompts = sum(PROMPT_DURATIONS[step.task] for step in asked if isinstance(step, Prompt))
+        with_them, alone = (_per_block(virtual, channels[:1], _IDLE, beside=each) for each in (beside, ()))
+        wall += prompts / BLOCK_DURATION * max(0.0, with_them - alone)
     return ExpectedTime(duration=duration, samples=samples, wall_time=wall, spent=spent)
 
 
@@ -102,16 +121,24 @@ def _lasts(point: SetPoint) -> float:
     return (point.recorded_until or point.time) - point.time
 
 
-def _per_block(virtual: VirtualRig, names: tuple[str, ...], rate: float) -> float:
-    """Time for one block of channels, in s."""
+def _per_block(
+    virtual: VirtualRig, names: tuple[str, ...], rate: float, *, beside: Sequence[tuple[Stream, float]]
+) -> float:
+    """Time for one block of channels, and for those of other clocks in its time, in s."""
     trial, count, times = virtual.trial(), max(1, round(BLOCK_DURATION * rate)), []
     trial.start(names, rate)
+    for stream, own in beside:
+        trial.start_beside(Stream(stream.sources, stream.generator), tuple(stream.sources), own, _dropped)
     trial.turn(1.0)
     for _ in range(_BLOCKS):
         began = monotonic()
         trial.read(count)
         times.append(monotonic() - began)
     return median(times) + _HANDLING
+
+
+def _dropped(_: Floats) -> None:
+    """Take samples that are computed to see."""
 
 
 def _prepared(virtual: VirtualRig, points: tuple[SetPoint, ...], groove_diameter: float) -> tuple[float, float]:

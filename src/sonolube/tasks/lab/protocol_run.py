@@ -16,6 +16,7 @@ from sonolube.laboratory import RunControl, RunState, RunWatcher, exit_code, run
 from sonolube.laboratory.devices import Devices
 from sonolube.laboratory.drivers import read_device_map, unfulfilled
 from sonolube.laboratory.dry_run import DryRun, dry_run_chart
+from sonolube.laboratory.interlocks import drive_sampling, recorded_channels
 from sonolube.laboratory.records import Run, export_run, read_run
 from sonolube.laboratory.rehearsal import Rehearsal, rehearsal
 from sonolube.laboratory.run_plan import (
@@ -442,6 +443,10 @@ def _dry_run(protocol: Protocol, rig: Rig | None, file: Path | None) -> DryRun:
     devices, metadata = device_map.devices(), protocol.metadata
     on_disc = metadata.model_copy(update={"groove_diameter": groove_diameter(protocol, devices)})
     found = dry_runs.dry_run(protocol.model_copy(update={"metadata": on_disc}), rig=rig)
+    caveats, sampling, recorded = list(found.caveats), drive_sampling(protocol), recorded_channels(protocol)
+    if sampling is not None and (unresolved := sampling.caveat(recorded)) in caveats:  # of the protocol's rate alone
+        caveats.remove(unresolved)
+        caveats += filter(None, [sampling.caveat_of(recorded, devices.channels)])
     untold, assumptions = devices.description.get("drive not read back"), dict(found.assumptions)
     setting = self_test_setting(next(filter(None, map(drive_setting, flattened(protocol))), None))
     if setting is not None:
@@ -453,7 +458,7 @@ def _dry_run(protocol: Protocol, rig: Rig | None, file: Path | None) -> DryRun:
         found,
         protocol=protocol,
         refusals=(*found.refusals, *unfulfilled(device_map, protocol)),
-        caveats=(*found.caveats, *([f"drive not read back: {untold}"] if untold else [])),
+        caveats=(*caveats, *([f"drive not read back: {untold}"] if untold else [])),
         assumptions=assumptions,
     )
 
