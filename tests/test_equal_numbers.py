@@ -33,7 +33,6 @@ ONE_NUMBER: dict[str, tuple[int, str]] = {
     "browser/test_pages.py": (2, "digits that are shown"),
     "browser/test_proxy.py": (1, "digits that are shown"),
     "browser/test_recording_view.py": (2, "extremes are samples, and a view is kept"),
-    "browser/test_rig_view.py": (1, "keys"),
     "browser/test_scan_walk.py": (2, "ends of a section that stay as they are"),
     "browser/test_server.py": (1, "a file that is sent"),
     "browser/test_taken_away.py": (1, "a file that is read back"),

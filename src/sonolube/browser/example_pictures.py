@@ -45,7 +45,6 @@ def example_entry(name: str) -> dict[str, str]:
 def main() -> None:
     """Write all pictures, and the list of them."""
     entries = [example_entry(name) for name, each in example_files().items() if each.is_rig]
-    FOLDER.mkdir(exist_ok=True)
     for entry in entries:
         write_atomically(FOLDER / f"{entry['name']}.svg", entry.pop("picture"))
     write_atomically(FOLDER / "examples.json", json.dumps(entries, ensure_ascii=False, indent=1) + "\n")

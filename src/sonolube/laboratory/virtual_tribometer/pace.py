@@ -87,7 +87,7 @@ def expected_time(
         Of the circle under the pin. [m]
     beside : sequence of (Stream, float)
         Acquisitions with clocks of their own, which sample all the time, also while somebody is asked, each with its
-        sample rate. [Hz]
+        sample rate in Hz.
 
     Returns
     -------
