@@ -242,7 +242,10 @@ def test_a_rate_within_five_per_cent_is_recorded_as_it_is(rate: float) -> None:
         (lambda block: replace(block, values=block.values[:, 0]), r"gives values of shape \(20,\)"),
         (lambda block: replace(block, sample_rate=800.0), "has changed its sample rate from 400 Hz to 800 Hz"),
         (lambda block: replace(block, values=block.values + np.inf), "gives an infinite value"),
-        (lambda block: replace(block, first_sample=block.first_sample - block.samples), "-20 samples are missing"),
+        (
+            lambda block: replace(block, first_sample=block.first_sample - block.samples),
+            "gives sample 60 once more, where 80 follows",
+        ),
         (
             lambda block: replace(block, values=np.full(block.values.shape, -(2**15), np.int16)),
             "channel voltage is -32.8 kV; its limit is 30 V",

@@ -90,6 +90,8 @@ class DriveSetting:
 
 def require_gapless(block: Block, sample: int, *, device: str) -> None:
     """Raise SamplesLost where a block does not begin with the sample that follows."""
+    if block.first_sample < sample:
+        raise SamplesLost(f"{device}: gives sample {block.first_sample} once more, where {sample} follows")
     if block.first_sample != sample:
         raise SamplesLost(f"{device}: {block.first_sample - sample} samples are missing after sample {sample}")
 

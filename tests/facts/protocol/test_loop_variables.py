@@ -8,6 +8,7 @@ from typing import get_args
 import pytest
 
 from sonolube.errors import InvalidInput
+from sonolube.facts.materials import material_names
 from sonolube.facts.protocol import (
     Prompt,
     Protocol,
@@ -129,3 +130,14 @@ def test_the_protocol_of_the_page_on_writing_one_has_its_settings() -> None:
     assert protocol.metadata.operator == "Ann"
     tasks = re.findall(r"`(\w+)`", page.partition("The `task` of a prompt is")[2].partition(".")[0])
     assert tuple(tasks) == get_args(Prompt.model_fields["task"].annotation)
+
+
+def test_every_material_of_a_part_in_the_documentation_is_one_of_the_catalogue() -> None:
+    pages = sorted((Path(__file__).parents[3] / "docs").rglob("*.md"))
+    named = [
+        (page.name, name)
+        for page in pages
+        for name in re.findall(r'(?:pin|disc)_material = "(\w+)"', page.read_text(encoding="utf-8"))
+    ]
+    assert ("protocols.md", "brass_c36000") in named
+    assert [each for each in named if each[1] not in material_names()] == []
