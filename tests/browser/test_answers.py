@@ -17,6 +17,7 @@ from sonolube.browser.rig_view import rig_view
 from sonolube.browser.take_away import changed_text
 from sonolube.browser.worker import reply
 from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.facts.materials import material_classes
 from sonolube.rig import read_rig
 from sonolube.tasks.table import task_named
 
@@ -153,8 +154,12 @@ def test_uploaded_runs_and_content_in_the_request_are_the_same(tmp_path: Path) -
 
 
 def test_materials_are_chosen_by_the_titles_of_their_task() -> None:
-    known = sl.materials().json_object()
-    assert KINDS["materials"]({}, NOWHERE) == {name: each["title"] for name, each in known.items()}
+    titles = KINDS["materials"]({}, NOWHERE)
+    known = {name: each["title"] for name, each in sl.materials().json_object().items()}
+    classes = {name: title for name, title in titles.items() if name in material_classes()}
+    assert {name: classes.get(name, title) for name, title in known.items()} == titles
+    assert classes["brass"] == "Brass, any"
+    assert all(title.endswith(", any") for title in classes.values())
 
 
 def test_no_task_that_opens_a_device_is_offered() -> None:

@@ -79,4 +79,4 @@ def test_of_a_room_none_of_whose_tests_reach_a_line_those_of_its_file_are_taken(
         for line in ("LIMIT = 5", "return LIMIT")
     )
     assert stages_of(limit) == (["tests/rig/b.py::asks", "tests/rig/c.py::other"], [["tests/cli/a.py::starts"]])
-    assert stages_of(call) == (["tests/rig/b.py::asks"], [["tests/cli/a.py::starts"]])
+    assert stages_of(call) == (["tests/rig/b.py::asks", "tests/rig/c.py::other"], [["tests/cli/a.py::starts"]])

@@ -86,6 +86,7 @@ def test_every_friction_model_finds_less_friction_at_20_mm_per_second() -> None:
     hard = [name for name, model in FRICTION_MODELS.items() if not model.for_soft_bodies]
     ratios = {name: tribometer(f"friction.model={name}").friction.friction_ratio for name in hard}
     assert ratios.pop("coulomb") == 1.0  # which knows no effect of vibration along the normal
+    assert np.isnan(ratios.pop("dahl"))  # outside its range: the cube stiffens faster than its load
     assert all(0 < ratio < 1 for ratio in ratios.values()), ratios
 
 

@@ -39,6 +39,9 @@ def test_every_friction_model_has_an_error_at_its_defaults_and_none_at_other_par
         if "normal" not in model.directions or model.for_soft_bodies:  # of which no published test along the normal is
             assert unseen_error(model()) is None
             continue
+        if model.name in ("dahl", "lugre"):  # which are not among the variants fitted to the published tests
+            assert unseen_error(model()) is None
+            continue
         found = unseen_error(model())
         assert found is not None
         assert found.rms > 0

@@ -292,10 +292,9 @@ def _modes() -> "Figure":
         axes.plot(*(1e3 * places.T), ".", color="0.8", ms=1.5)
         x, y = moved.T
         points = axes.scatter(x, y, c=size / size.max(), s=3, cmap="viridis", vmin=0, vmax=1)
-        axes.set(xlabel="Across the stacks [mm]", aspect="equal")
+        axes.set(xlabel="Across the stacks [mm]", ylabel="Along the stacks [mm]", aspect="equal")
         axes.set_title(f"{title}\n{1e-3 * frequency:.1f} kHz", fontsize=9)
         axes.grid(visible=False)
-    panels[0].set_ylabel("Along the stacks [mm]")
     figure.colorbar(points, ax=panels, label="Displacement over its largest [1]", shrink=0.8)
     return figure
 

@@ -386,8 +386,8 @@ def thermal(
     '7.3 mW'
     """
     known = rig_of(rig)
-    _ = resolved_rig(known).separation  # which refuses a load that leaves none
     if (crushed := crushing_load(known)) is not None:
+        _ = resolved_rig(known).separation  # which refuses a load that leaves none by that reason first
         raise InvalidInput(f"{known.title}: {crushed}")
     hardness = softer_hardness(known, pin, disc)
     levels = vibration_heat.split(",") if isinstance(vibration_heat, str) else [vibration_heat]
