@@ -289,13 +289,14 @@ def _modes() -> "Figure":
         frequency, places, shape = mode_near(collar, frequency=near, open_top=is_open)
         moved = 1e3 * (places + _DRAWN * np.ptp(places) * shape / np.abs(shape).max())
         size = np.linalg.norm(shape, axis=1)
-        axes.plot(*(1e3 * places.T), ".", color="0.8", ms=1.5)
+        axes.plot(*(1e3 * places.T), ".", color="0.8", ms=1.5, zorder=1, label="nodes at rest")
         x, y = moved.T
-        points = axes.scatter(x, y, c=size / size.max(), s=3, cmap="viridis", vmin=0, vmax=1)
+        points = axes.scatter(x, y, c=size / size.max(), s=3, cmap="viridis", vmin=0, vmax=1, zorder=2)
         axes.set(xlabel="Across the stacks [mm]", ylabel="Along the stacks [mm]", aspect="equal")
         axes.set_title(f"{title}\n{1e-3 * frequency:.1f} kHz", fontsize=9)
         axes.grid(visible=False)
     figure.colorbar(points, ax=panels, label="Displacement over its largest [1]", shrink=0.8)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", markerscale=3)
     return figure
 
 
